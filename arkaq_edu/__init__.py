@@ -1,0 +1,32 @@
+"""ARKAQ learning, taught: a Kalman filter, an ART network and Q-learning on a legged robot.
+
+Units everywhere: millimetres, radians, seconds, grams. Orientation is positive to the left.
+
+The rooms of the house, from the ground up (a room imports only from those before it):
+
+- `kalman`, `art`, `mdp`: the methods, from scratch;
+- `field`: the football field, the ball, the legged robot and its camera;
+- `arkaq`: the agent, made of a world model and a policy;
+- `envs`: the tasks as Gymnasium environments;
+- `experiments`, `figures`: the thesis's experiments and its figures;
+- `widgets`, `exercises`: what the notebooks use;
+- `cli`: the ``arkaq`` command.
+"""
+
+import lazy_loader as _lazy
+
+__version__ = "0.1.0"
+
+__getattr__, __dir__, __all__ = _lazy.attach(
+    __name__,
+    submodules=[
+        "arkaq", "art", "cli", "envs", "exercises", "experiments", "field", "figures", "kalman",
+        "mdp", "widgets",
+    ],
+    submod_attrs={
+        "arkaq": ["Arkaq"],
+        "art": ["EuclideanART"],
+        "kalman": ["KalmanFilter", "constant_velocity", "kalman_batch"],
+        "mdp": ["QLearner"],
+    },
+)  # fmt: skip
