@@ -14,6 +14,7 @@ The rooms of the house, from the ground up (a room imports only from those befor
 """
 
 import lazy_loader as _lazy
+from gymnasium.envs.registration import register as _register
 
 __version__ = "0.1.0"
 
@@ -30,3 +31,9 @@ __getattr__, __dir__, __all__ = _lazy.attach(
         "mdp": ["QLearner"],
     },
 )  # fmt: skip
+
+_register(
+    "BallApproach-v0",
+    entry_point="arkaq_edu.envs.ball_approach:BallApproachEnv",
+    max_episode_steps=150,
+)

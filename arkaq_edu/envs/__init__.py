@@ -1,0 +1,10 @@
+"""The tasks as Gymnasium environments.
+
+Importing `arkaq_edu` registers them: ``gymnasium.make("arkaq_edu:BallApproach-v0")``.
+"""
+
+import lazy_loader as _lazy
+
+__getattr__, __dir__, __all__ = _lazy.attach(
+    __name__, submod_attrs={"ball_approach": ["BallApproachEnv"]}
+)

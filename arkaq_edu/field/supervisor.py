@@ -1,0 +1,126 @@
+"""The supervisor: it places the robot and the ball, and judges how an approach ended."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from arkaq_edu import _checks
+from arkaq_edu.field.camera import FIELD_OF_VIEW
+from arkaq_edu.field.world import World
+
+# From here, looking up the field, every place that the camera covers lies on the carpet.
+START = (-2500.0, 0.0, 0.0)
+NEAREST, FARTHEST = 200.0, 4100.0
+CLOSE_ENOUGH, STRAIGHT_ENOUGH = 500.0, 0.05
+CLOSE_REWARD, STRAIGHT_REWARD = 100.0, 50.0
+
+Placement = Literal["area", "thesis"]
+
+
+class Verdict(NamedTuple):
+    """How things stand: the reward, and whether the ball is reached."""
+
+    reward: float
+    is_success: bool
+
+
+def random_place(
+    rng: np.random.Generator,
+    near: float = NEAREST,
+    far: float = FARTHEST,
+    placement: Placement = "area",
+) -> tuple[float, float]:
+    """Draw a place for the ball inside the robot's field of view.
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+    near, far : float
+        The nearest and farthest distance (mm).
+    placement : {"area", "thesis"}
+        "thesis": eq 5.1, a uniform depth z, then a uniform x under the border of the view
+        triangle; the density of balls on the field falls as 1 / z. "area": uniform on the
+        field, for which the distance is the root of a uniform number. Both stay within [near,
+        far].
+
+    Returns
+    -------
+    distance, orientation : float
+        In mm and rad.
+
+    References
+    ----------
+    Thesis 5.2.1, eq 5.1, figures 5.7 and 5.8.
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(0)
+    >>> distance, orientation = random_place(rng, near=600.0)
+    >>> 600 <= distance <= 4100, abs(orientation) <= 0.4965
+    (True, True)
+    """
+    half = FIELD_OF_VIEW / 2
+    if placement == "area":
+        distance = math.sqrt(rng.uniform(near**2, far**2))
+        return distance, rng.uniform(-half, half)
+    while True:
+        z = rng.uniform(0.0, far)
+        x = z * math.tan(half) * rng.uniform(0.0, 1.0) * rng.choice((-1.0, 1.0))
+        distance = math.hypot(z, x)
+        if near <= distance <= far:
+            return distance, math.atan2(x, z)
+
+
+class Supervisor:
+    """The referee above the field.
+
+    Parameters
+    ----------
+    near, far : float
+        Where it places the ball: distance from the robot (mm), in [200, 4100].
+    placement : {"area", "thesis"}
+        See `random_place`.
+
+    References
+    ----------
+    Thesis 5.2.1 and 5.2.2.
+
+    Examples
+    --------
+    >>> world, supervisor = World(rng=0), Supervisor(near=1000.0)
+    >>> supervisor.reset(world, np.random.default_rng(0))
+    >>> supervisor.judge(world)
+    Verdict(reward=0.0, is_success=False)
+    """
+
+    def __init__(
+        self, near: float = 600.0, far: float = FARTHEST, placement: Placement = "area"
+    ) -> None:
+        self.near = _checks.number("near", near, NEAREST, FARTHEST)
+        self.far = _checks.number("far", far, self.near, FARTHEST)
+        if placement not in ("area", "thesis"):
+            raise ValueError(f"placement must be 'area' or 'thesis', got {placement!r}")
+        self.placement = placement
+
+    def reset(self, world: World, rng: np.random.Generator) -> None:
+        """Put the robot back to its start and the ball to a random place it can see."""
+        distance, orientation = random_place(rng, self.near, self.far, self.placement)
+        self.place(world, distance, orientation)
+
+    def place(self, world: World, distance: float, orientation: float) -> None:
+        """Put the robot back to its start and the ball where it is told (mm, rad)."""
+        x, y, heading = START
+        angle = heading + orientation
+        ball = x + distance * math.cos(angle), y + distance * math.sin(angle)
+        world.reset(START, ball)
+
+    def judge(self, world: World) -> Verdict:
+        """Return the reward of the moment: +100 within 500 mm, +50 more within .05 rad."""
+        distance, orientation = world.ball_from_robot()
+        if distance >= CLOSE_ENOUGH:
+            return Verdict(0.0, False)
+        straight = abs(orientation) <= STRAIGHT_ENOUGH
+        return Verdict(CLOSE_REWARD + STRAIGHT_REWARD * straight, True)

@@ -1,0 +1,154 @@
+"""The field from above, as a picture."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from arkaq_edu.field import pitch
+from arkaq_edu.field.camera import FIELD_OF_VIEW
+from arkaq_edu.field.world import World
+
+# Drawn larger and shrunk, which smooths every edge.
+_OVERSAMPLING = 3
+_SIGHT = 4100.0
+EXTENT = (
+    -pitch.CARPET_LENGTH / 2,
+    pitch.CARPET_LENGTH / 2,
+    -pitch.CARPET_WIDTH / 2,
+    pitch.CARPET_WIDTH / 2,
+)
+
+_CARPET, _LINE, _BORDER = (58, 125, 75), (240, 240, 235), (120, 124, 128)
+_SHELL, _DARK, _LEG = (246, 246, 248), (44, 46, 52), (190, 194, 200)
+
+
+class _Canvas:
+    """A drawing in millimetres: x to the right, y upwards."""
+
+    def __init__(self, width: int) -> None:
+        self.scale = width * _OVERSAMPLING / pitch.CARPET_LENGTH
+        height = round(width * pitch.CARPET_WIDTH / pitch.CARPET_LENGTH)
+        self.size = (width, height)
+        self.image = Image.new("RGB", (width * _OVERSAMPLING, height * _OVERSAMPLING), _CARPET)
+        self.draw = ImageDraw.Draw(self.image, "RGBA")
+
+    def at(self, x: float, y: float) -> tuple[float, float]:
+        middle_x, middle_y = self.image.width / 2, self.image.height / 2
+        return middle_x + x * self.scale, middle_y - y * self.scale
+
+    def line(self, points: Sequence[tuple[float, float]], colour, width: float) -> None:
+        pixels = max(1, round(width * self.scale))
+        self.draw.line([self.at(*p) for p in points], fill=colour, width=pixels, joint="curve")
+
+    def polygon(self, points: Sequence[tuple[float, float]], colour) -> None:
+        self.draw.polygon([self.at(*p) for p in points], fill=colour)
+
+    def disc(self, x: float, y: float, radius: float, colour, outline=None, width=0.0) -> None:
+        (left, top), (right, bottom) = (
+            self.at(x - radius, y + radius),
+            self.at(x + radius, y - radius),
+        )
+        self.draw.ellipse(
+            (left, top, right, bottom),
+            fill=colour,
+            outline=outline,
+            width=max(1, round(width * self.scale)),
+        )
+
+    def finish(self) -> np.ndarray:
+        return np.asarray(self.image.resize(self.size, Image.Resampling.LANCZOS))
+
+
+def bird_view(
+    world: World,
+    width: int = 900,
+    trail: Sequence[tuple[float, float]] = (),
+    sight: bool = True,
+) -> np.ndarray:
+    """Draw the field from above: carpet, lines, goals, ball and robot.
+
+    Parameters
+    ----------
+    world : World
+        The field as it is now.
+    width : int
+        Width of the picture (pixels); its height is two thirds of it.
+    trail : sequence of (x, y)
+        Where the robot has been (mm).
+    sight : bool
+        Whether to show the camera's field of view (figure 5.7).
+
+    Returns
+    -------
+    ndarray of uint8, shape (height, width, 3)
+        Rows from +y down; `EXTENT` is its extent for ``imshow``.
+
+    Examples
+    --------
+    >>> bird_view(World(rng=0), width=300).shape
+    (200, 300, 3)
+    """
+    canvas = _Canvas(width)
+    _draw_pitch(canvas)
+    x, y, heading = world.pose
+    if sight:
+        rim = np.linspace(-FIELD_OF_VIEW / 2, FIELD_OF_VIEW / 2, 25) + heading
+        wedge = [(x + _SIGHT * math.cos(a), y + _SIGHT * math.sin(a)) for a in rim]
+        canvas.polygon([(x, y), *wedge], (255, 255, 255, 38))
+    if len(trail) > 1:
+        canvas.line(trail, (250, 225, 90), 28)
+    _draw_ball(canvas, *world.ball)
+    _draw_robot(canvas, x, y, heading)
+    return canvas.finish()
+
+
+def _draw_pitch(canvas: _Canvas) -> None:
+    x, y = pitch.CARPET_LENGTH / 2, pitch.CARPET_WIDTH / 2
+    for x1, y1, x2, y2 in pitch.lines():
+        canvas.line([(x1, y1), (x2, y2)], _LINE, pitch.LINE_WIDTH)
+    canvas.disc(0, 0, pitch.CIRCLE_RADIUS, None, _LINE, pitch.LINE_WIDTH)
+    for x1, y1, x2, y2, height, colour in pitch.panels().tolist():
+        if height == pitch.GOAL_HEIGHT:
+            paint = tuple(int(c) for c in pitch.PALETTE[int(colour)])
+            canvas.line([(x1, y1), (x2, y2)], paint, 40)
+    for px, py, radius, _, colour in pitch.posts().tolist():
+        canvas.disc(px, py, radius, tuple(int(c) for c in pitch.PALETTE[int(colour)]))
+    border = [(-x, -y), (x, -y), (x, y), (-x, y), (-x, -y)]
+    canvas.line(border, _BORDER, 40)
+
+
+def _draw_ball(canvas: _Canvas, x: float, y: float) -> None:
+    orange = tuple(int(c) for c in pitch.PALETTE[pitch.ORANGE])
+    canvas.disc(x + 10, y - 12, pitch.BALL_RADIUS + 4, (0, 0, 0, 70))
+    # A real ball of 84 mm is a dot on this scale: the rim makes it easy to find.
+    canvas.disc(x, y, pitch.BALL_RADIUS + 8, orange, (120, 45, 10), 10)
+
+
+def _draw_robot(canvas: _Canvas, x: float, y: float, heading: float) -> None:
+    """Draw the body, four legs, the head with its ears, and the tail."""
+    c, s = math.cos(heading), math.sin(heading)
+
+    def place(ahead: float, left: float) -> tuple[float, float]:
+        return x + ahead * c - left * s, y + ahead * s + left * c
+
+    def block(front: float, back: float, left: float, right: float, colour) -> None:
+        corners = [(front, left), (front, right), (back, right), (back, left)]
+        canvas.polygon([place(*corner) for corner in corners], colour)
+
+    half_length, half_width = pitch.ROBOT_LENGTH / 2, pitch.ROBOT_WIDTH / 2
+    block(half_length - 20, -half_length - 12, half_width + 14, -half_width - 14, (0, 0, 0, 50))
+    for ahead in (55.0, -125.0):
+        for left in (half_width - 28, -half_width - 2):
+            block(ahead + 62, ahead, left + 30, left, _LEG)
+    canvas.line([place(-110, 0), place(-185, 0)], _DARK, 16)
+    block(70, -125, 58, -58, _SHELL)
+    canvas.disc(*place(70, 0), 58, _SHELL)
+    block(-10, -100, 40, -40, _DARK)
+    canvas.disc(*place(122, 0), 50, _SHELL, _LEG, 6)
+    for left in (52.0, -52.0):
+        canvas.line([place(118, left), place(78, left * 1.15)], _DARK, 22)
+    canvas.disc(*place(148, 0), 24, _DARK)
