@@ -1,0 +1,388 @@
+"""The Kalman filter, step by step and over a whole track."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from arkaq_edu._checks import array, covariance, number
+from arkaq_edu.kalman import _kernels
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class KalmanTrace:
+    """Everything a filter knew along a track of T rows, with n states and m measurements.
+
+    Attributes
+    ----------
+    x, P : ndarray, shapes (T, n) and (T, n, n)
+        Estimate and its covariance after each row (posterior).
+    x_prior, P_prior : ndarray, shapes (T, n) and (T, n, n)
+        The same before the row's sighting was used (prediction).
+    innovation : ndarray, shape (T, m)
+        z - H x_prior; NaN where an entry of z was missing.
+    S : ndarray, shape (T, m, m)
+        Covariance the innovation should have, H P_prior H' + R.
+    K : ndarray, shape (T, n, m)
+        Gain as it was used: a missing entry has a column of zeros.
+    nis : ndarray, shape (T,)
+        Normalised innovation squared, innovation' S^-1 innovation; NaN for a missing sighting.
+    accepted : ndarray of bool, shape (T,)
+        Whether the row's sighting was used: False when it was missing or failed the gate.
+    log_likelihood : float
+        Logarithm of the probability density of all sightings that were used.
+    """
+
+    x: Array
+    P: Array
+    x_prior: Array
+    P_prior: Array
+    innovation: Array
+    S: Array
+    K: Array
+    nis: Array
+    accepted: NDArray[np.bool_]
+    log_likelihood: float
+
+
+def _snapshot(
+    name: str, doc: str, check: Callable[[KalmanFilter, ArrayLike], Array] | None = None
+) -> property:
+    """Return a property that reads `name` as a read-only copy and, given `check`, assigns it.
+
+    Read-only, so that an edit in place, which would change only the copy, is not lost in silence.
+    """
+
+    def read(self: KalmanFilter) -> Array:
+        copy: Array = getattr(self, name).copy()
+        copy.setflags(write=False)
+        return copy
+
+    def assign(self: KalmanFilter, value: ArrayLike) -> None:
+        if check is None:
+            raise AttributeError(f"{name[1:]} is fixed; make a new KalmanFilter to change it")
+        setattr(self, name, check(self, value))
+
+    return property(read, assign, doc=doc)
+
+
+class KalmanFilter:
+    """Estimate the state x of a linear system from noisy, incomplete sightings z.
+
+    The system (thesis eq 2.49 to 2.52) has n states, m measurements and k control inputs::
+
+        x_k = A x_{k-1} + B u_{k-1} + w,   w ~ N(0, Q)
+        z_k = H x_k + v,                   v ~ N(0, R)
+
+    Parameters
+    ----------
+    A : array_like, shape (n, n)
+        State transition model.
+    H : array_like, shape (m, n)
+        Observation model.
+    Q : array_like, shape (n, n)
+        Covariance of the process noise w of one step: symmetric, positive semi-definite.
+    R : array_like, shape (m, m)
+        Covariance of the measurement noise v: symmetric, positive semi-definite.
+    B : array_like, shape (n, k), optional
+        Control-input model.
+    x0 : array_like, shape (n,), optional
+        Estimate before the first predict; zeros by default.
+    P0 : array_like, shape (n, n), optional
+        Its covariance. By default `x0` is taken to be known a million times worse than one
+        sighting tells, so the first sighting overrules it whatever the units are: every state has
+        the variance 1e6 times the largest R_ii / (H H')_ii (1e6 where R is zero).
+    gate : float, optional
+        Probability in (0, 1) with which a true sighting shall pass. A sighting whose NIS exceeds
+        this quantile of the chi-square distribution is an outlier and is treated as missing.
+        By default everything passes.
+
+    Attributes
+    ----------
+    x, P : ndarray, shapes (n,) and (n, n)
+        The estimate now and its covariance. May be assigned.
+    R : ndarray, shape (m, m)
+        May be assigned, where the noise changes between sightings.
+    K, innovation, S : ndarray, shapes (n, m), (m,) and (m, m)
+        Gain (eq 2.57), z - H x and its covariance H P H' + R at the last update.
+    nis, log_likelihood, accepted : float, float and bool
+        Of the last update: innovation' S^-1 innovation (NaN if nothing was seen), the log density
+        of the sighting (0 if it was not used), and whether it was used.
+    A, H, Q, B, x0, P0 : ndarray
+        As given. Arrays read from the filter are read-only copies: later steps do not change
+        them, and to change the filter one assigns, which is checked.
+
+    Raises
+    ------
+    ValueError
+        If a matrix has the wrong shape or holds NaN, or a covariance is asymmetric or has a
+        negative eigenvalue.
+
+    Notes
+    -----
+    A NaN in z is a missing entry: the others are used as they are, and if all are missing x and P
+    stay as predicted. A sighting, or an entry of one, that is already known exactly (R = 0 twice)
+    says nothing new and is passed over, so no matrix is ever singular. P is updated in Joseph's
+    form: equal to eq 2.59, and still symmetric and positive after a million steps.
+
+    Where the thesis misleads:
+
+    - After eq 2.54 it says that K goes to H^-1 as R goes to 0. With fewer measurements than
+      states H has no inverse: K becomes a right inverse, H K = I.
+    - Section 5.2 sets R to the swings seen at far distances, 100 mm and .05 rad. R holds
+      variances: as printed they mean sigma = 10 mm and .22 rad. A swing of 3 sigma gives
+      R = diag(1111, .00028), one of 1 sigma diag(10^4, .0025).
+    - Its Q = diag(.001, .0001, .0001, .000001) is so small beside that R that a jump of the ball,
+      as after a footstep or a reset, takes dozens of updates to be believed. Footsteps are known:
+      pass them as ``B u``. After a reset, call `reset`.
+
+    References
+    ----------
+    Thesis section 2.5, eq 2.49 to 2.59. R. E. Kalman, "A new approach to linear filtering and
+    prediction problems", Journal of Basic Engineering 82 (1960).
+
+    Examples
+    --------
+    Two rulers that are equally good: the estimate is their mean, with half the variance.
+
+    >>> ruler = KalmanFilter(A=[[1.0]], H=[[1.0]], Q=[[0.0]], R=[[4.0]], x0=[10.0], P0=[[4.0]])
+    >>> ruler.predict()
+    array([10.])
+    >>> ruler.update([12.0])
+    array([11.])
+    >>> ruler.P
+    array([[2.]])
+
+    A ball seen through a gap:
+
+    >>> from arkaq_edu import constant_velocity
+    >>> A, H = constant_velocity(1.0, 1)
+    >>> ball = KalmanFilter(A, H, Q=np.zeros((2, 2)), R=[[1.0]])
+    >>> trace = ball.filter([[100.0], [200.0], [np.nan], [np.nan], [500.0]])
+    >>> trace.x[:, 0].round()
+    array([100., 200., 300., 400., 500.])
+    """
+
+    def __init__(
+        self,
+        A: ArrayLike,
+        H: ArrayLike,
+        Q: ArrayLike,
+        R: ArrayLike,
+        B: ArrayLike | None = None,
+        x0: ArrayLike | None = None,
+        P0: ArrayLike | None = None,
+        *,
+        gate: float | None = None,
+    ) -> None:
+        n = len(array("A", A, (None, None)))
+        m = len(array("H", H, (None, n)))
+        self._A = np.array(array("A", A, (n, n)), order="C")
+        self._H = np.array(H, np.float64, order="C")
+        self._Q = np.array(covariance("Q", Q, n), order="C")
+        self._R = np.array(covariance("R", R, m), order="C")
+        self._B = np.zeros((n, 0)) if B is None else np.array(array("B", B, (n, None)), order="C")
+        self._x0 = np.zeros(n) if x0 is None else np.array(array("x0", x0, (n,)))
+        self._P0 = self._wide() if P0 is None else np.array(covariance("P0", P0, n), order="C")
+        self._no_input = np.zeros(self._B.shape[1])
+        self._W = np.empty((n + m, n + m))
+        self._gates = np.full(m + 1, np.inf)
+        if gate is not None:
+            gate = number("gate", gate, 0, 1, open_low=True, open_high=True)
+            from scipy.special import chdtri
+
+            self._gates[1:] = chdtri(np.arange(1, m + 1), 1 - gate)
+        self.gate = gate
+        self.reset()
+
+    x = _snapshot(
+        "_x", "The estimate.", lambda self, value: np.array(array("x", value, self._x0.shape))
+    )
+    P = _snapshot(
+        "_P",
+        "The covariance of the estimate.",
+        lambda self, value: np.array(covariance("P", value, self._x0.size), order="C"),
+    )
+    R = _snapshot(
+        "_R", "The covariance of the measurement noise.", lambda self, value: self._noise(value)
+    )
+    A = _snapshot("_A", "The state transition model.")
+    H = _snapshot("_H", "The observation model.")
+    Q = _snapshot("_Q", "The covariance of the process noise.")
+    B = _snapshot("_B", "The control-input model; without one it has no columns.")
+    x0 = _snapshot("_x0", "The estimate before the first step.")
+    P0 = _snapshot("_P0", "The covariance of `x0`.")
+    K = _snapshot("_K", "The gain of the last update.")
+    S = _snapshot("_S", "The covariance of the last innovation.")
+    innovation = _snapshot("_innovation", "The last z - H x.")
+
+    def __repr__(self) -> str:
+        n, k = self._B.shape
+        return f"KalmanFilter({n} states, {len(self._H)} measurements, {k} inputs)"
+
+    def reset(self) -> None:
+        """Forget everything seen: x and P go back to `x0` and `P0`."""
+        m, n = self._H.shape
+        self._x, self._P = self._x0.copy(), self._P0.copy()
+        self._K = np.zeros((n, m))
+        self._innovation = np.full(m, np.nan)
+        self._S = np.full((m, m), np.nan)
+        self.nis, self.log_likelihood, self.accepted = np.nan, 0.0, False
+
+    def predict(self, u: ArrayLike | None = None) -> Array:
+        """Move one step ahead without looking (time update, eq 2.55 and 2.56).
+
+        Parameters
+        ----------
+        u : array_like, shape (k,), optional
+            Control input of this step; zero by default.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            The predicted state.
+
+        Raises
+        ------
+        ValueError
+            If `u` has the wrong shape, is not finite, or comes to a filter without B.
+
+        Examples
+        --------
+        >>> kf = KalmanFilter([[1]], [[1]], [[1]], [[1]], B=[[-100]], x0=[1500], P0=[[0]])
+        >>> kf.predict([1.5])
+        array([1350.])
+        """
+        if u is None:
+            step = self._no_input
+        else:
+            self._check_has_input("u")
+            step = np.array(array("u", u, self._no_input.shape))
+        _kernels.predict(self._A, self._Q, self._B, step, self._x, self._P, self._W)
+        return self._x.copy()
+
+    def update(self, z: ArrayLike, R: ArrayLike | None = None) -> Array:
+        """Correct the prediction by a sighting (measurement update, eq 2.57 to 2.59).
+
+        Parameters
+        ----------
+        z : array_like, shape (m,)
+            What was measured; NaN where an entry is missing.
+        R : array_like, shape (m, m), optional
+            Noise of this sighting alone, as when far ones are noisier; else the filter's own.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            The corrected state.
+
+        Raises
+        ------
+        ValueError
+            If `z` has the wrong shape or is infinite, or `R` is no covariance.
+
+        Examples
+        --------
+        >>> kf = KalmanFilter([[1]], [[1]], [[0]], [[1]], x0=[0], P0=[[1]])
+        >>> kf.update([4.0], R=[[3.0]])
+        array([1.])
+        >>> kf.update([float("nan")])
+        array([1.])
+        """
+        noise = self._R if R is None else self._noise(R)
+        try:
+            sighting = np.array(z, np.float64)
+        except (TypeError, ValueError):
+            sighting = np.empty(0)
+        nis = -1.0
+        if sighting.shape == self._innovation.shape:
+            nis, self.log_likelihood, self.accepted = _kernels.update(
+                self._H, noise, self._gates, sighting,
+                self._x, self._P, self._K, self._innovation, self._S, self._W,
+            )  # fmt: skip
+        if nis == -1.0:
+            array("z", z, self._innovation.shape, allow_nan=True)
+        self.nis = nis
+        return self._x.copy()
+
+    def filter(
+        self, Z: ArrayLike, U: ArrayLike | None = None, R: ArrayLike | None = None
+    ) -> KalmanTrace:
+        """Filter a whole track from `x0` and `P0`: each row is one predict, then one update.
+
+        The filter itself is not changed, so the same call gives the same trace.
+
+        Parameters
+        ----------
+        Z : array_like, shape (T, m)
+            Sightings; NaN where an entry is missing.
+        U : array_like, shape (T, k), optional
+            Control input of the step that leads to each row; zero by default.
+        R : array_like, shape (T, m, m), optional
+            Noise of each row, where it changes along the track; else the filter's own.
+
+        Returns
+        -------
+        KalmanTrace
+            Every prior, posterior, gain and innovation.
+
+        Raises
+        ------
+        ValueError
+            If a shape is wrong, Z holds an infinity, U is not finite or R holds no covariances.
+
+        Examples
+        --------
+        >>> kf = KalmanFilter([[1]], [[1]], [[0]], [[1]], x0=[0], P0=[[1]])
+        >>> trace = kf.filter([[3.0], [np.nan], [2.0]])
+        >>> trace.x[:, 0]
+        array([1.5 , 1.5 , 1.66666667])
+        >>> trace.P[:, 0, 0]
+        array([0.5 , 0.5 , 0.33333333])
+        """
+        m, n = self._H.shape
+        Z = np.array(array("Z", Z, (None, m), allow_nan=True), order="C")
+        T = len(Z)
+        if U is None:
+            U = np.zeros((T, self._no_input.size))
+        else:
+            self._check_has_input("U")
+            U = np.array(array("U", U, (T, self._no_input.size)), order="C")
+        noise = self._R[np.newaxis]
+        if R is not None:
+            noise = np.array(array("R", R, (T, m, m)), order="C")
+            for t in range(T):
+                noise[t] = self._noise(noise[t])
+        shapes: dict[str, Any] = {
+            "x": n, "P": (n, n), "x_prior": n, "P_prior": (n, n),
+            "K": (n, m), "innovation": m, "S": (m, m), "nis": (),
+        }  # fmt: skip
+        rows = {name: np.empty((T, *np.atleast_1d(shape))) for name, shape in shapes.items()}
+        accepted = np.empty(T, np.bool_)
+        log_likelihood = _kernels.track(
+            self._A, self._H, self._Q, noise, self._B, self._gates, self._x0, self._P0, Z, U,
+            *rows.values(), accepted,
+        )  # fmt: skip
+        return KalmanTrace(**rows, accepted=accepted, log_likelihood=log_likelihood)
+
+    def _wide(self) -> Array:
+        """Return the P0 beside which one sighting is a million times surer."""
+        reach = (self._H**2).sum(axis=1)
+        variances = np.diag(self._R)[reach > 0] / reach[reach > 0]
+        widest = float(variances.max(initial=0.0))
+        return 1e6 * (widest or 1.0) * np.eye(self._x0.size)
+
+    def _noise(self, R: ArrayLike) -> Array:
+        """Return R as a covariance of its own, by a quick look where that is enough."""
+        own = np.array(array("R", R, self._R.shape), order="C")
+        return own if _kernels.is_covariance(own) else covariance("R", own, len(own))
+
+    def _check_has_input(self, name: str) -> None:
+        if self._no_input.size == 0:
+            raise ValueError(f"{name} must be None for a filter without B")
