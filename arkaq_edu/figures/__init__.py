@@ -1,0 +1,1 @@
+"""One function for each figure of the thesis, and the visual grammar they share."""

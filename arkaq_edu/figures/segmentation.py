@@ -1,0 +1,340 @@
+"""Figures 5.10 to 5.14: how the ART network cuts the robot's view into categories.
+
+A category is a centre; its cell is every ball position nearer to this centre than to any other.
+Near is meant between scaled patterns, where distance and orientation both run from -1 to 1; in
+the picture's own units the cells are the same polygons, stretched.
+
+References
+----------
+Thesis, section 5.2.1 and figures 5.10 to 5.14.
+
+Examples
+--------
+>>> import numpy as np
+>>> from matplotlib.figure import Figure
+>>> plot = plot_centers(np.array([[0.0, -0.5], [0.0, 0.5]]), Figure().subplots())
+>>> plot.n_centers
+2
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import Voronoi
+
+from .. import _checks
+from ..art import EuclideanART
+from . import style
+
+#: The numbers of centres the thesis prints, by vigilance (figures 5.10 to 5.14).
+THESIS_COUNTS = {0.15: 137, 0.1: 333, 0.075: 519, 0.05: 825, 0.025: 1933}
+
+# What the scaled interval [-1, 1] stands for.
+DISTANCE = (200.0, 4100.0)
+ORIENTATION = (-0.5, 0.5)
+
+
+class CentersPlot(NamedTuple):
+    """What `plot_centers` drew."""
+
+    ax: Axes
+    cells: PolyCollection
+    centers: Line2D
+    n_centers: int
+
+
+def recorded_patterns() -> NDArray[np.float64]:
+    """Return the course's recorded stream of sightings as scaled patterns.
+
+    Returns
+    -------
+    array, shape (n, 2)
+        Distance and orientation, each in [-1, 1], in the order in which they were seen.
+    """
+    from ..experiments.streams import load_sightings
+
+    seen = load_sightings()
+    return scale(seen["distance"], seen["orientation"])
+
+
+def scale(distance: ArrayLike, orientation: ArrayLike) -> NDArray[np.float64]:
+    """Scale sightings for the ART network: 200..4100 mm and -0.5..0.5 rad become -1..1.
+
+    Parameters
+    ----------
+    distance : array_like, shape (n,)
+        Distance of the ball in mm.
+    orientation : array_like, shape (n,)
+        Orientation of the ball in rad, positive to the left.
+
+    Returns
+    -------
+    array, shape (n, 2)
+
+    References
+    ----------
+    Thesis, section 5.2.1.
+
+    Examples
+    --------
+    >>> scale([200, 2150, 4100], [-0.5, 0, 0.25])
+    array([[-1. , -1. ],
+           [ 0. ,  0. ],
+           [ 1. ,  0.5]])
+    """
+    distance, orientation = np.asarray(distance, float), np.asarray(orientation, float)
+    return np.stack([(distance - 2150) / 1950, orientation * 2], axis=-1)
+
+
+def unscale(patterns: ArrayLike) -> NDArray[np.float64]:
+    """Turn scaled patterns into points of the picture: the way back from `scale`, axes swapped.
+
+    Parameters
+    ----------
+    patterns : array_like, shape (..., 2)
+        Scaled distance and orientation.
+
+    Returns
+    -------
+    array, shape (..., 2)
+        Orientation in rad (across), distance in mm (up).
+
+    Examples
+    --------
+    >>> unscale([[-1, 0.5]])
+    array([[  0.25, 200.  ]])
+    """
+    patterns = np.asarray(patterns, float)
+    return np.stack([patterns[..., 1] / 2, patterns[..., 0] * 1950 + 2150], axis=-1)
+
+
+def voronoi_cells(
+    centers: ArrayLike,
+) -> tuple[list[NDArray[np.float64]], NDArray[np.intp]]:
+    """Return each centre's cell, the points nearest to it, and which cells touch.
+
+    Inside the square [-1, 1] x [-1, 1] the cells are exact; outside they end somewhere.
+
+    Parameters
+    ----------
+    centers : array_like, shape (n, 2)
+        Points of the square, n >= 1.
+
+    Returns
+    -------
+    polygons : list of n arrays, shape (k, 2)
+        The corners of each cell, in order around it.
+    pairs : array of int, shape (m, 2)
+        Indices of centres whose cells share a border.
+
+    Examples
+    --------
+    >>> polygons, pairs = voronoi_cells([[0, -0.5], [0, 0.5]])
+    >>> len(polygons), pairs.tolist()
+    (2, [[0, 1]])
+    """
+    centers = _checks.array("centers", centers, (None, 2))
+    n = len(centers)
+    # A ring of far points closes the outer cells. No point of the square is nearer to the ring
+    # than to a centre: across the square is 2.8, to the ring at least 10.
+    angles = np.arange(8) * np.pi / 4
+    ring = 12 * np.column_stack([np.cos(angles), np.sin(angles)])
+    diagram = Voronoi(np.vstack([centers, ring]))
+    polygons = [diagram.vertices[diagram.regions[region]] for region in diagram.point_region[:n]]
+    pairs = diagram.ridge_points
+    return polygons, np.sort(pairs[(pairs < n).all(axis=1)], axis=1)
+
+
+def six_colors(n: int, pairs: NDArray[np.intp]) -> list[int]:
+    """Colour the cells of a map with six colours so that no two neighbours share one.
+
+    Some country of a map always has fewer than six neighbours. Take it away, colour the rest, and
+    put it back: one of six colours is free.
+
+    Parameters
+    ----------
+    n : int
+        Number of cells.
+    pairs : array of int, shape (m, 2)
+        Neighbours. The map must be flat, as cells in a plane are.
+
+    Returns
+    -------
+    list of n int
+        Numbers from 0 to 5.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> six_colors(3, np.array([[0, 1], [1, 2]]))
+    [0, 1, 2]
+    """
+    neighbours: list[list[int]] = [[] for _ in range(n)]
+    for i, j in pairs.tolist():
+        neighbours[i].append(j)
+        neighbours[j].append(i)
+    left_over = [len(others) for others in neighbours]
+    ready = [i for i in range(n) if left_over[i] < 6]
+    taken_away: list[int] = []
+    while ready:
+        i = ready.pop()
+        taken_away.append(i)
+        for j in neighbours[i]:
+            left_over[j] -= 1
+            if left_over[j] == 5:
+                ready.append(j)
+    colors = [-1] * n
+    for i in reversed(taken_away):
+        used = {colors[j] for j in neighbours[i]}
+        # Starting at a colour of its own makes all six appear equally often.
+        colors[i] = next(c % 6 for c in range(i, i + 6) if c % 6 not in used)
+    return colors
+
+
+def map_of(centers: ArrayLike) -> tuple[list[NDArray[np.float64]], list[int]]:
+    """Return the cells of centres as polygons of the robot's view, and a colour for each.
+
+    Parameters
+    ----------
+    centers : array_like, shape (n, 2)
+        Centres as scaled patterns (distance, orientation).
+
+    Returns
+    -------
+    polygons : list of n arrays, shape (k, 2)
+        Corners: orientation in rad, distance in mm.
+    colors : list of n int
+        Numbers from 0 to 5, different for neighbours.
+
+    Examples
+    --------
+    >>> polygons, colors = map_of([[0, -0.5], [0, 0.5]])
+    >>> colors
+    [0, 1]
+    """
+    polygons, pairs = voronoi_cells(centers)
+    return [unscale(polygon) for polygon in polygons], six_colors(len(polygons), pairs)
+
+
+def plot_centers(centers: ArrayLike, ax: Axes | None = None, *, title: str = "") -> CentersPlot:
+    """Draw centres and their cells in the robot's view.
+
+    Parameters
+    ----------
+    centers : array_like, shape (n, 2)
+        Centres as scaled patterns (distance, orientation).
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+    title : str
+        What the picture states.
+
+    Returns
+    -------
+    CentersPlot
+        ``ax``, ``cells``, ``centers`` (the dots) and ``n_centers``.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> plot_centers([[0, -0.5], [0, 0.5]], Figure().subplots()).centers.get_xdata()
+    array([-0.25,  0.25])
+    """
+    polygons, colors = map_of(centers)
+    ax = style.view_axes(ax, title=title)
+    area = style.cells(polygons, [style.CELLS[color] for color in colors], ax)
+    (left, right), (near, far) = ORIENTATION, DISTANCE
+    view = Rectangle((left, near), right - left, far - near, transform=ax.transData)
+    area.set_clip_path(view)
+    across, up = unscale(centers).T
+    size = 2 * style.dot_radius(len(polygons))
+    (dots,) = ax.plot(across, up, "o", color=style.INK, markersize=size, markeredgewidth=0)
+    return CentersPlot(ax, area, dots, len(polygons))
+
+
+def figure_5_10(ax: Axes | None = None, **options: Any) -> CentersPlot:
+    """Draw figure 5.10, the centres at vigilance 0.15; see `plot_segmentation`."""
+    return plot_segmentation(0.15, ax, **options)
+
+
+def figure_5_11(ax: Axes | None = None, **options: Any) -> CentersPlot:
+    """Draw figure 5.11, the centres at vigilance 0.1; see `plot_segmentation`."""
+    return plot_segmentation(0.1, ax, **options)
+
+
+def figure_5_12(ax: Axes | None = None, **options: Any) -> CentersPlot:
+    """Draw figure 5.12, the centres at vigilance 0.075; see `plot_segmentation`."""
+    return plot_segmentation(0.075, ax, **options)
+
+
+def figure_5_13(ax: Axes | None = None, **options: Any) -> CentersPlot:
+    """Draw figure 5.13, the centres at vigilance 0.05; see `plot_segmentation`."""
+    return plot_segmentation(0.05, ax, **options)
+
+
+def figure_5_14(ax: Axes | None = None, **options: Any) -> CentersPlot:
+    """Draw figure 5.14, the centres at vigilance 0.025; see `plot_segmentation`."""
+    return plot_segmentation(0.025, ax, **options)
+
+
+def plot_segmentation(
+    vigilance: float,
+    ax: Axes | None = None,
+    *,
+    patterns: ArrayLike | None = None,
+    learning_rate: float | str = 0.5,
+) -> CentersPlot:
+    """Segment a stream of patterns and draw the centres, with the thesis's count and ours.
+
+    Parameters
+    ----------
+    vigilance : float
+        Distance, between scaled patterns, from which on a pattern founds a centre.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+    patterns : array_like, shape (n, 2), optional
+        Scaled patterns in their order; the recorded stream where it is None.
+    learning_rate : float or "count"
+        As for `arkaq_edu.art.EuclideanART`.
+
+    Returns
+    -------
+    CentersPlot
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> plot = plot_segmentation(0.15, Figure().subplots(), patterns=[[0, 0], [0.1, 0], [1, 1]])
+    >>> plot.ax.get_title(loc="left")
+    '2 categories at vigilance 0.15, the thesis printed 137'
+    """
+    patterns = recorded_patterns() if patterns is None else patterns
+    centers = EuclideanART(vigilance, learning_rate).fit(patterns).cluster_centers_
+    return plot_centers(centers, ax, title=count_fact(len(centers), vigilance))
+
+
+def count_fact(n: int, vigilance: float) -> str:
+    """Say how many categories there are, and what the thesis printed there or nearby.
+
+    Examples
+    --------
+    >>> count_fact(140, 0.15)
+    '140 categories at vigilance 0.15, the thesis printed 137'
+    >>> count_fact(200, 0.125)
+    '200 categories at vigilance 0.125, the thesis printed 333 at 0.1 and 137 at 0.15'
+    >>> count_fact(80, 0.2)
+    '80 categories at vigilance 0.2, the thesis printed 137 at 0.15'
+    """
+    ours = f"{n} categor{'y' if n == 1 else 'ies'} at vigilance {vigilance:g}"
+    if vigilance in THESIS_COUNTS:
+        return f"{ours}, the thesis printed {THESIS_COUNTS[vigilance]}"
+    below = sorted(v for v in THESIS_COUNTS if v < vigilance)[-1:]
+    above = sorted(v for v in THESIS_COUNTS if v > vigilance)[:1]
+    around = " and ".join(f"{THESIS_COUNTS[v]} at {v:g}" for v in below + above)
+    return f"{ours}, the thesis printed {around}"

@@ -1,0 +1,10 @@
+"""What the notebooks let a student move: sliders above a picture that follows them.
+
+Every explorer is an `Explorer`: plain controls, a plain function from their values to a `Scene`,
+and one canvas that draws any scene.
+"""
+
+from .explorer import CanvasView, Explorer
+from .vigilance import vigilance_explorer
+
+__all__ = ["CanvasView", "Explorer", "vigilance_explorer"]

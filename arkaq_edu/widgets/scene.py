@@ -1,0 +1,262 @@
+"""A picture as data: panels with axes, layers on the panels, and the fact that it states.
+
+A scene is drawn twice: by the browser on a canvas while a kernel runs, and by matplotlib into the
+PNG that a stored notebook shows without one. Both painters know the same few layers.
+
+Examples
+--------
+>>> dots = Points([0.0, 1.0], [2.0, 3.0])
+>>> panel = Panel("time (s)", "distance (mm)", (0, 1), (0, 4), [dots])
+>>> layout, numbers = Scene("two dots", [panel]).pack()
+>>> layout["panels"][0]["layers"][0]["kind"], len(numbers)
+('points', 16)
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+from matplotlib.ticker import FixedLocator, MaxNLocator, NullLocator
+from numpy.typing import ArrayLike, NDArray
+from PIL import Image
+
+from ..figures import style
+
+PNG_WIDTH = 760  # what a stored picture takes of the page, in pixels of the page
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Polygons, each filled with a colour of `style.CELLS`, seen through a window of the panel.
+
+    `within` is that window: left, right, bottom, top, in the units of the axes.
+    """
+
+    kind: ClassVar[str] = "cells"
+    polygons: Sequence[NDArray[np.float64]]
+    colors: Sequence[int]
+    within: tuple[float, float, float, float]
+
+    def look(self) -> dict[str, Any]:
+        """Return all but the numbers."""
+        border = style.border_width(len(self.polygons))
+        return {"palette": style.CELLS, "within": self.within, "border": border}
+
+    def numbers(self) -> NDArray[np.float32]:
+        """Return how many polygons, their sizes, their colours, their corners."""
+        sizes = [len(polygon) for polygon in self.polygons]
+        corners = np.concatenate([np.ravel(polygon) for polygon in self.polygons])
+        return np.concatenate([[len(sizes)], sizes, self.colors, corners]).astype(np.float32)
+
+    def paint(self, ax: Axes) -> None:
+        """Draw with matplotlib."""
+        area = style.cells(self.polygons, [style.CELLS[color] for color in self.colors], ax)
+        left, right, bottom, top = self.within
+        window = Rectangle((left, bottom), right - left, top - bottom, transform=ax.transData)
+        area.set_clip_path(window)
+
+
+@dataclass(frozen=True)
+class Points:
+    """Round marks: filled for what we computed, hollow for what was measured or printed."""
+
+    kind: ClassVar[str] = "points"
+    x: ArrayLike
+    y: ArrayLike
+    radius: float = 3.0
+    color: str = style.INK
+    hollow: bool = False
+
+    def look(self) -> dict[str, Any]:
+        """Return all but the numbers."""
+        return {"radius": self.radius, "color": self.color, "hollow": self.hollow}
+
+    def numbers(self) -> NDArray[np.float32]:
+        """Return x and y, in turn."""
+        return np.column_stack([self.x, self.y]).astype(np.float32).ravel()
+
+    def paint(self, ax: Axes) -> None:
+        """Draw with matplotlib."""
+        size = 2 * self.radius * 0.75  # from pixels of the page to points
+        if self.hollow:
+            style.measurements(self.x, self.y, ax, color=self.color, markersize=size)
+        else:
+            ax.plot(self.x, self.y, "o", color=self.color, markersize=size, markeredgewidth=0)
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line through points."""
+
+    kind: ClassVar[str] = "line"
+    x: ArrayLike
+    y: ArrayLike
+    color: str = style.INK
+    width: float = 1.5
+    dashed: bool = False
+
+    def look(self) -> dict[str, Any]:
+        """Return all but the numbers."""
+        return {"color": self.color, "width": self.width, "dashed": self.dashed}
+
+    def numbers(self) -> NDArray[np.float32]:
+        """Return x and y, in turn."""
+        return np.column_stack([self.x, self.y]).astype(np.float32).ravel()
+
+    def paint(self, ax: Axes) -> None:
+        """Draw with matplotlib."""
+        dash = "--" if self.dashed else "-"
+        ax.plot(self.x, self.y, dash, color=self.color, linewidth=self.width * 0.75)
+
+
+@dataclass(frozen=True)
+class Text:
+    """Words that begin at a point, half a line above or below it."""
+
+    kind: ClassVar[str] = "text"
+    x: float
+    y: float
+    text: str
+    color: str = style.INK
+
+    def look(self) -> dict[str, Any]:
+        """Return all but the numbers."""
+        return {"text": self.text, "color": self.color}
+
+    def numbers(self) -> NDArray[np.float32]:
+        """Return x and y."""
+        return np.array([self.x, self.y], dtype=np.float32)
+
+    def paint(self, ax: Axes) -> None:
+        """Draw with matplotlib."""
+        ax.text(self.x, self.y, self.text, color=self.color, va="center", fontsize=9)
+
+
+Layer = Cells | Points | Line | Text
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Axes with units, and what is drawn on them, first layer first.
+
+    Parameters
+    ----------
+    xlabel, ylabel : str
+        What runs along the axes, with its unit.
+    xlim, ylim : tuple of two float
+        Ends of the axes; the first may be the greater.
+    layers : sequence of Cells, Points, Line or Text
+        What is drawn.
+    log : bool
+        Whether both axes are logarithmic.
+    xticks, yticks : sequence of float, optional
+        Where numbers stand; round ones are chosen where it is None.
+    width : float
+        Share of the picture's width.
+    """
+
+    xlabel: str
+    ylabel: str
+    xlim: tuple[float, float]
+    ylim: tuple[float, float]
+    layers: Sequence[Layer]
+    log: bool = False
+    xticks: Sequence[float] | None = None
+    yticks: Sequence[float] | None = None
+    width: float = 1.0
+
+    def ticks(self) -> tuple[list[float], list[float]]:
+        """Return where the numbers of the two axes stand.
+
+        Examples
+        --------
+        >>> Panel("x", "y", (0, 1), (0, 4000), [], xticks=[0, 1]).ticks()
+        ([0.0, 1.0], [0.0, 1000.0, 2000.0, 3000.0, 4000.0])
+        """
+        return _ticks(self.xticks, self.xlim), _ticks(self.yticks, self.ylim)
+
+    def paint(self, ax: Axes) -> None:
+        """Draw with matplotlib."""
+        style.axes(ax, xlabel=self.xlabel, ylabel=self.ylabel)
+        if self.log:
+            ax.set(xscale="log", yscale="log")
+        ax.set(xlim=self.xlim, ylim=self.ylim)
+        for axis, ticks in zip((ax.xaxis, ax.yaxis), self.ticks(), strict=True):
+            axis.set_major_locator(FixedLocator(ticks))
+            axis.set_minor_locator(NullLocator())
+            axis.set_ticklabels([tick_label(tick) for tick in ticks])
+        for layer in self.layers:
+            layer.paint(ax)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Panels side by side, and the one sentence that the picture states."""
+
+    fact: str
+    panels: Sequence[Panel]
+
+    def pack(self) -> tuple[dict[str, Any], bytes]:
+        """Return what the browser's painter takes: a layout, and every number as float32."""
+        parts: list[NDArray[np.float32]] = []
+        panels = []
+        start = 0
+        for panel in self.panels:
+            layers = []
+            for layer in panel.layers:
+                numbers = layer.numbers()
+                place = {"start": start, "length": len(numbers)}
+                layers.append({"kind": layer.kind, **place, **layer.look()})
+                parts.append(numbers)
+                start += len(numbers)
+            axes = {
+                end: [[tick, tick_label(tick)] for tick in ticks]
+                for end, ticks in zip(("xticks", "yticks"), panel.ticks(), strict=True)
+            }
+            names = ("xlabel", "ylabel", "xlim", "ylim", "log", "width")
+            panels.append(
+                {name: getattr(panel, name) for name in names} | axes | {"layers": layers}
+            )
+        empty = np.empty(0, np.float32)
+        return {"fact": self.fact, "panels": panels}, np.concatenate([empty, *parts]).tobytes()
+
+    def png(self) -> bytes:
+        """Return the picture as matplotlib draws it, twice as fine as the page shows it."""
+        figure = Figure(figsize=(PNG_WIDTH / 96, 4.0), dpi=192, layout="constrained")
+        widths = [panel.width for panel in self.panels]
+        row = figure.subplots(1, len(self.panels), width_ratios=widths, squeeze=False)[0]
+        for panel, ax in zip(self.panels, row, strict=True):
+            panel.paint(ax)
+        figure.suptitle(self.fact, x=0.01, ha="left", fontsize="medium", color=style.INK)
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        picture = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+        file = io.BytesIO()
+        # A quarter of the bytes, and no eye sees it: these pictures have few colours.
+        picture.quantize(128, dither=Image.Dither.NONE).save(file, "PNG", optimize=True)
+        return file.getvalue()
+
+
+def tick_label(value: float) -> str:
+    """Return a tick's number as it is printed beside the axis.
+
+    Examples
+    --------
+    >>> tick_label(2000.0), tick_label(-0.2), tick_label(0.0)
+    ('2,000', '−0.2', '0')
+    """
+    return f"{value:,.10g}".replace("-", "−")
+
+
+def _ticks(given: Sequence[float] | None, limits: tuple[float, float]) -> list[float]:
+    low, high = sorted(limits)
+    ticks = MaxNLocator(6, steps=[1, 2, 5, 10]).tick_values(low, high) if given is None else given
+    return [round(float(tick), 10) + 0.0 for tick in ticks if low <= tick <= high]
