@@ -1,0 +1,122 @@
+"""Where the course's notebooks and data lie, and how a student gets a copy of their own."""
+
+from __future__ import annotations
+
+import filecmp
+import os
+import shutil
+from pathlib import Path
+
+FIRST_PAGE = "00_start_here.ipynb"
+
+
+def in_repository() -> bool:
+    """Tell whether the package runs from the repository rather than from a wheel.
+
+    Examples
+    --------
+    >>> in_repository() == (course_folder() / "pyproject.toml").exists()
+    True
+    """
+    return not (Path(__file__).parent / "_course").is_dir()
+
+
+def course_folder() -> Path:
+    """Return the folder that holds ``notebooks`` and ``data``.
+
+    In a wheel that is a folder inside the package; in the repository it is the repository's root.
+
+    Examples
+    --------
+    >>> (course_folder() / "notebooks").is_dir()
+    True
+    """
+    package = Path(__file__).parent
+    return package.parent if in_repository() else package / "_course"
+
+
+def data_file(name: str) -> Path:
+    """Return the path of the course's data file `name`.
+
+    Parameters
+    ----------
+    name : str
+        A path below the folder ``data``.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file; the message names those there are.
+
+    Examples
+    --------
+    >>> data_file("moon.npz")  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    FileNotFoundError: no data file 'moon.npz' in this course; there are: ...
+    """
+    folder = course_folder() / "data"
+    path = folder / name
+    if not path.is_file():
+        there = ", ".join(file.relative_to(folder).as_posix() for file in _files(folder))
+        raise FileNotFoundError(f"no data file {name!r} in this course; there are: {there}")
+    return path
+
+
+def copy_course(folder: Path | str) -> tuple[list[Path], list[Path]]:
+    """Copy the course into `folder`, and never over anything that is there already.
+
+    Parameters
+    ----------
+    folder : path
+        Made if it does not exist.
+
+    Returns
+    -------
+    copied : list of Path
+        What was new in `folder`, relative to it.
+    kept : list of Path
+        What was there and differs from the course, relative to `folder`: the reader's own work.
+        It is left as it is.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     copied, kept = copy_course(folder)
+    ...     again = copy_course(folder)
+    >>> Path("notebooks/00_start_here.ipynb") in copied, kept, again
+    (True, [], ([], []))
+    """
+    source = course_folder()
+    copied, kept = [], []
+    for file in [*_files(source / "notebooks"), *_files(source / "data")]:
+        name = file.relative_to(source)
+        target = Path(folder) / name
+        if not os.path.lexists(target):
+            _copy_whole(file, target)
+            copied.append(name)
+        elif not target.is_file() or not filecmp.cmp(file, target, shallow=False):
+            kept.append(name)
+    return copied, kept
+
+
+def _files(folder: Path) -> list[Path]:
+    """List what of `folder` belongs to the course: no tools, caches or checkpoints."""
+    return [
+        path
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+        and path.suffix not in {".py", ".pyc"}
+        and not any(part.startswith(".") for part in path.relative_to(folder).parts)
+    ]
+
+
+def _copy_whole(source: Path, target: Path) -> None:
+    """Copy a file so that, interrupted, it leaves no half of it under the name of `target`."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    part = target.with_name(target.name + ".part")
+    try:
+        shutil.copyfile(source, part)
+        part.rename(target)
+    finally:
+        part.unlink(missing_ok=True)

@@ -1,0 +1,398 @@
+"""What must hold of the whole house: how it is installed, what it imports, what it says."""
+
+import ast
+import inspect
+import os
+import re
+import shutil
+import socket
+import subprocess
+import sys
+import time
+import tomllib
+import urllib.request
+import zipfile
+from pathlib import Path
+
+import click
+import pytest
+from click.testing import CliRunner
+from packaging.requirements import Requirement
+
+import arkaq_edu as ae
+from arkaq_edu import _paths, cli
+
+ROOT = Path(__file__).parents[1]
+PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
+LOCK = (ROOT / "requirements.lock").read_text()
+
+
+# Floors
+
+FLOORS = [
+    "kalman art mdp pomdp",
+    "field",
+    "arkaq",
+    "envs",
+    "experiments",
+    "figures",
+    "widgets exercises",
+    "cli",
+]
+FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms.split()}
+GROUND = frozenset(FLOORS[0].split())
+TOO_HIGH_FOR_THE_GROUND = {"pymunk", "matplotlib", "ipywidgets", "anywidget", "gymnasium"}
+
+
+def imports(source, package):
+    """Every module or name that the source text imports, in full, wherever in it that is."""
+    found, aliases = set(), set()
+    tree = ast.parse(source)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+            aliases |= {a.asname or a.name for a in node.names if a.name == "arkaq_edu"}
+        elif isinstance(node, ast.ImportFrom):
+            above = package[: len(package) - node.level + 1] if node.level else []
+            module = ".".join([*above, *([node.module] if node.module else [])])
+            found |= {module} | {f"{module}.{alias.name}" for alias in node.names}
+    return found | {
+        f"arkaq_edu.{node.attr}"
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute)
+        and isinstance(node.value, ast.Name)
+        and node.value.id in aliases
+    }
+
+
+def climbs(source, path):
+    """Those imports of the file at `path` (below the package) that do not point down."""
+    room = path.parts[0].removesuffix(".py")
+    found = imports(source, ["arkaq_edu", *path.parts[:-1]])
+    own = FLOOR.get(room, -1)  # what belongs to no room stands below them all
+    up = {
+        name
+        for name in found
+        if name.startswith("arkaq_edu.") and FLOOR.get(name.split(".")[1], -1) > own
+    }
+    if own <= 0:
+        up |= {name for name in found if name.split(".")[0] in TOO_HIGH_FOR_THE_GROUND}
+    return up
+
+
+@pytest.mark.parametrize(
+    ("path", "source"),
+    [
+        ("kalman.py", "from arkaq_edu.field import World"),
+        ("kalman/filter.py", "from ..figures import style"),
+        ("art/euclidean.py", "def f():\n    import matplotlib.pyplot as plt"),
+        ("envs/goal.py", "import arkaq_edu as ae\nae.figures.figure_5_16()"),
+        ("_checks.py", "from arkaq_edu import kalman"),
+    ],
+)
+def test_an_import_that_points_up_is_noticed(path, source):
+    assert climbs(source, Path(path))
+
+
+def test_imports_only_point_down():
+    package = ROOT / "arkaq_edu"
+    wrong = [
+        f"{path.relative_to(ROOT)} imports {name}"
+        for path in sorted(package.rglob("*.py"))
+        if path.name != "__init__.py" or path.parent != package
+        for name in sorted(climbs(path.read_text(), path.relative_to(package)))
+    ]
+    assert wrong == []
+
+
+def test_importing_the_package_loads_no_heavy_library():
+    heavy = ["numba", "sklearn", "scipy", "matplotlib", "pymunk", "pandas"]
+    program = f"import sys, arkaq_edu; print([m for m in {heavy!r} if m in sys.modules])"
+    answer = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, cwd=ROOT, check=True
+    )
+    assert answer.stdout.strip() == "[]"
+
+
+# What is said
+
+
+@pytest.mark.parametrize("name", ae.__all__)
+def test_a_public_name_is_documented_with_an_example(name):
+    thing = getattr(ae, name)
+    text = inspect.getdoc(thing) or ""
+    assert text, f"{name} does not say what it is"
+    assert inspect.ismodule(thing) or re.search(r"^Examples\n-+\n(.*\n)*?>>> ", text, re.M), (
+        f"{name} shows no example"
+    )
+
+
+def committed():
+    git = shutil.which("git")
+    if git is None or not (ROOT / ".git").exists():
+        pytest.skip("this is no clone, or there is no git")
+    answer = subprocess.run([git, "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True)
+    return [ROOT / name for name in answer.stdout.decode().split("\0") if name]
+
+
+def test_nothing_committed_names_a_registry_or_one_machine():
+    # Spelled in pieces, so that this file passes its own test.
+    hosts = "(" + "|".join(["py" + "pi", "python" + "hosted", "npm" + "js", "ana" + "conda"]) + ")"
+    folders = "(" + "|".join(["work", "tmp", "root", "Users/[a-z]+", "home/[a-z]+"]) + ")"
+    told = re.compile(rf"{hosts}\.(org|com|io)|(?<![\w.])/{folders}/")
+    found = []
+    for path in committed():
+        data = path.read_bytes() if path.is_file() else b""
+        if b"\0" in data:
+            continue
+        for number, line in enumerate(data.decode(errors="replace").splitlines(), 1):
+            # A stored picture is text that can spell anything.
+            if '"image/png": "' not in line and ";base64," not in line and told.search(line):
+                found.append(f"{path.relative_to(ROOT)}:{number}: {line.strip()[:100]}")
+    assert found == []
+
+
+def test_every_link_in_the_guides_leads_somewhere():
+    broken = []
+    for page in [*ROOT.glob("*.md"), *(ROOT / "notebooks").glob("*.ipynb")]:
+        for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text()):
+            if ":" not in target and not (page.parent / target.split("#")[0]).exists():
+                broken.append(f"{page.name}: {target}")
+    assert broken == []
+
+
+# Installing
+
+
+def test_the_lock_holds_hashes_and_no_addresses():
+    packages = re.findall(
+        r"^(\S+==\S+)[^\n]*\\\n((?: +--hash=sha256:[0-9a-f]{64}.*\n)+)", LOCK, re.M
+    )
+    assert len(packages) == len(re.findall(r"^[a-z0-9]", LOCK, re.M)) > 100
+    assert "://" not in LOCK
+
+
+def test_the_lock_gives_what_the_project_asks_for():
+    project = PYPROJECT["project"]
+    wanted = [
+        *project["dependencies"],
+        *project["optional-dependencies"]["test"],
+        *PYPROJECT["build-system"]["requires"],
+    ]
+    locked = dict(re.findall(r"^([a-z0-9_.-]+)==(\S+)", LOCK, re.M))
+    missing = [r for r in map(Requirement, wanted) if locked.get(r.name, "") not in r.specifier]
+    assert missing == []
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory):
+    """The wheel, unpacked where no repository is near."""
+    folder = tmp_path_factory.mktemp("wheel")
+    build = "import hatchling.build, sys; print(hatchling.build.build_wheel(sys.argv[1]))"
+    answer = subprocess.run(
+        [sys.executable, "-c", build, str(folder)],
+        cwd=ROOT, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    unpacked = folder / "site"
+    zipfile.ZipFile(folder / answer.stdout.split()[-1]).extractall(unpacked)
+    return unpacked
+
+
+def arkaq_from(wheel, *arguments, cwd):
+    environment = {**os.environ, "PYTHONPATH": str(wheel)}
+    return subprocess.run(
+        [sys.executable, "-m", "arkaq_edu.cli", *arguments],
+        cwd=cwd, env=environment, capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+
+
+def test_the_wheel_carries_the_course_and_gives_a_student_a_copy(wheel, tmp_path):
+    answer = arkaq_from(wheel, "lab", "--copy-only", cwd=tmp_path)
+    assert answer.returncode == 0, answer.stderr
+    copy = tmp_path / "arkaq-course"
+    for part in ("notebooks", "data"):
+        mine = _paths._files(ROOT / part)
+        theirs = _paths._files(copy / part)
+        assert [p.relative_to(ROOT) for p in mine] == [p.relative_to(copy) for p in theirs]
+        assert [p.read_bytes() for p in mine] == [p.read_bytes() for p in theirs]
+    assert (copy / "notebooks" / _paths.FIRST_PAGE).exists()
+    assert not list(copy.rglob("*.py"))
+
+
+# The command
+
+
+def run(*arguments):
+    return CliRunner().invoke(cli.main, [str(a) for a in arguments])
+
+
+def test_a_students_work_is_never_written_over(tmp_path):
+    first = tmp_path / "notebooks" / _paths.FIRST_PAGE
+    run("lab", tmp_path, "--copy-only")
+    whole = first.read_bytes()
+    extra = tmp_path / "notebooks" / "mine.ipynb"
+    extra.write_text("mine")
+    first.write_text("my answer")
+    answer = run("lab", tmp_path, "--copy-only")
+    assert answer.exit_code == 0
+    assert "0 files copied, 1 of yours kept" in answer.output
+    assert f"kept notebooks/{_paths.FIRST_PAGE}" in answer.output
+    assert first.read_text() == "my answer" and extra.read_text() == "mine"
+
+    first.rename(first.with_name("old.ipynb"))
+    assert "1 files copied, 0 of yours kept" in run("lab", tmp_path, "--copy-only").output
+    assert first.read_bytes() == whole
+
+
+def test_an_interrupted_copy_leaves_no_half_of_a_file(tmp_path, monkeypatch):
+    def stop_halfway(source, target):
+        Path(target).write_text("half")
+        raise OSError("No space left on device")
+
+    monkeypatch.setattr(shutil, "copyfile", stop_halfway)
+    answer = run("lab", tmp_path, "--copy-only")
+    assert (answer.exit_code, answer.output) == (2, "arkaq: error: No space left on device\n")
+    assert [p for p in tmp_path.rglob("*") if p.is_file()] == []
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["dance"],
+        ["--dance"],
+        ["lab", "--dance"],
+        ["lab", "one", "two"],
+        ["lab", str(ROOT / "LICENSE")],
+        ["lab", str(ROOT / "LICENSE" / "below"), "--copy-only"],
+    ],
+)
+def test_bad_input_is_answered_with_one_line_and_status_2(arguments):
+    answer = run(*arguments)
+    assert answer.exit_code == 2
+    assert re.fullmatch(r"arkaq: error: .+\n", answer.output)
+
+
+def test_a_refusal_by_the_package_is_one_line_too_and_a_defect_is_not():
+    @click.group(cls=cli.OneLineErrors)
+    def group():
+        pass
+
+    @group.command()
+    def refuse():
+        raise ValueError("vigilance must be\n  a number in (0, 1], got -2")
+
+    @group.command()
+    def fail():
+        raise KeyError("a defect")
+
+    answer = CliRunner().invoke(group, ["refuse"])
+    line = "arkaq: error: vigilance must be a number in (0, 1], got -2\n"
+    assert (answer.exit_code, answer.output) == (2, line)
+    assert isinstance(CliRunner().invoke(group, ["fail"]).exception, KeyError)
+
+
+def test_every_command_explains_itself():
+    assert run("--version").output == f"arkaq, version {PYPROJECT['project']['version']}\n"
+    assert run().output == run("--help").output
+    for name, command in cli.main.commands.items():
+        answer = run(name, "--help")
+        assert answer.exit_code == 0 and answer.output.startswith(f"Usage: arkaq {name}")
+        first = command.help.split(".")[0]
+        assert first in " ".join(run("--help").output.split())
+
+
+def test_lab_opens_the_first_page(tmp_path):
+    with socket.socket() as s:
+        s.bind(("127.0.0.1", 0))
+        port = s.getsockname()[1]
+    environment = {**os.environ, "JUPYTER_PORT": str(port), "JUPYTER_TOKEN": "sesame"}
+    server = subprocess.Popen(
+        [sys.executable, "-m", "arkaq_edu.cli", "lab", str(tmp_path), "--no-browser"],
+        env=environment, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+    )  # fmt: skip
+    try:
+        page = _answer(f"http://127.0.0.1:{port}/?token=sesame", server)
+    finally:
+        server.terminate()
+        server.wait(30)
+    assert page.url.split("?")[0].endswith(f"/lab/tree/{_paths.FIRST_PAGE}")
+    assert (tmp_path / "notebooks" / _paths.FIRST_PAGE).exists()
+
+
+def _answer(address, server):
+    for _ in range(300):
+        assert server.poll() is None, "JupyterLab stopped"
+        try:
+            return urllib.request.urlopen(address)
+        except OSError:
+            time.sleep(0.1)
+    raise AssertionError("JupyterLab does not answer")
+
+
+# The Makefile, with a Python that only pretends
+
+PRETENDER = """#!/bin/sh
+echo "$@" >> "$LOG"
+case "$*" in
+*ensurepip*) exit $TOO_OLD ;;
+*venv*) mkdir -p .venv/bin; cp "$0" .venv/bin/python ;;
+esac
+"""
+
+
+@pytest.fixture
+def clone(tmp_path):
+    """A folder, with a space in its name, that holds what `make install` reads."""
+    make = shutil.which("make")
+    if make is None:
+        pytest.skip("there is no make")
+    tools = tmp_path / "bin"
+    tools.mkdir()
+    for tool in ("cat", "cp", "echo", "mkdir"):
+        (tools / tool).symlink_to(shutil.which(tool))
+    python = tools / "python3"
+    python.write_text(PRETENDER)
+    python.chmod(0o755)
+    folder = tmp_path / "my clone"
+    folder.mkdir()
+    for name in ("Makefile", "pyproject.toml", "requirements.lock"):
+        shutil.copy(ROOT / name, folder)
+    log = tmp_path / "log"
+
+    def install(folder=folder, too_old=0):
+        log.write_text("")
+        environment = {"PATH": str(tools), "LOG": str(log), "TOO_OLD": str(too_old)}
+        answer = subprocess.run(
+            [make, "install"], cwd=folder, env=environment, capture_output=True, text=True
+        )
+        return answer, [line for line in log.read_text().splitlines() if " pip install " in line]
+
+    return folder, install
+
+
+def test_make_installs_by_hash_once(clone):
+    folder, install = clone
+    answer, pip = install()
+    assert answer.returncode == 0, answer.stderr
+    assert "--require-hashes --requirement requirements.lock" in pip[0]
+    assert "--no-build-isolation --editable ." in pip[1]
+    answer, pip = install()
+    assert (answer.returncode, pip) == (0, [])
+
+    soon = time.time() + 10
+    os.utime(folder / "requirements.lock", (soon, soon))
+    assert len(install()[1]) == 2
+
+
+def test_make_installs_anew_where_the_folder_has_moved(clone):
+    folder, install = clone
+    install()
+    moved = folder.rename(folder.with_name("elsewhere"))
+    assert len(install(moved)[1]) == 2
+    assert install(moved)[1] == []
+
+
+def test_make_without_a_python_says_so_in_one_line(clone):
+    answer, pip = clone[1](too_old=1)
+    assert answer.returncode == 2 and pip == []
+    assert re.fullmatch(r"Makefile:\d+: \*\*\* this course needs Python 3.11 .+\n", answer.stderr)
