@@ -1,126 +1,136 @@
 """Find the nearest of many moving centres without looking at all of them.
 
-Space is cut into cubic cells as wide as the vigilance, and a hash table says which centres lie in
-which cell. A centre nearer than the vigilance then lies in the pattern's own cell or in one that
-touches it; a nearest centre further off is found by looking outward, shell by shell. The work per
-pattern depends on how crowded a cell is, not on how many centres there are in all.
+Space is cut into cubic cells two vigilances wide, and a hash table says which centres lie in which
+cell. Everything nearer than one vigilance to a pattern then lies in the two cells per axis that a
+box around the pattern touches; a nearest centre further off is found by widening the box. So the
+work per pattern depends on how crowded a cell is, not on how many centres there are in all.
 
 The answer is that of comparing with every centre, to the last bit and ties included, because
 distances are computed in the same way and only centres that cannot win are left out. So the
 arrangement of the table never shows in a result, and it can be rebuilt from the centres.
 
-The table is a pair of integer arrays: ``heads[b]`` is the first centre of bucket `b`, ``nexts[j]``
-the centre after `j` in its bucket, -1 the end. Cells that share a bucket cost time, not exactness.
+The table is a pair of integer arrays: ``heads[b]`` is the first centre of bucket `b`, ``nexts[c]``
+the centre after `c` in its bucket, -1 the end. Cells that share a bucket cost time, not exactness.
 """
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
-from .._compiled import kernel
+from .._compiled import HAVE_NUMBA, kernel
 
 ANY_DISTANCE = 1 << 30  # a reach that no search uses up
-# Cells are a hair wider than the vigilance, so that rounding a place (by less than 2**-22 cells)
-# cannot put two points less than a vigilance apart into cells that do not touch.
+# Half a cell is a hair more than a vigilance, so that rounding a place (by less than 2**-22 half
+# cells) cannot put a centre less than a vigilance away outside the box around a pattern.
 _A_HAIR_LESS = 1.0 - 2.0**-20
-_FARTHEST_CELL = 2.0**28
+_FARTHEST = 2.0**28
 
 
-def cells_per_unit(vigilance: float) -> float:
-    """Return the `scale` of a grid: one over the width of its cells."""
+def inlined(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return `function` such that kernels take its body over: in an inner loop, calls are dear."""
+    if not HAVE_NUMBA:
+        return function
+    from numba import njit
+
+    return njit(inline="always")(function)
+
+
+def half_cells_per_unit(vigilance: float) -> float:
+    """Return the `scale` of the grid for a vigilance."""
     return _A_HAIR_LESS / vigilance
 
 
 @kernel
 def place(coordinate, scale):
-    """Return the cell of `coordinate` along one axis."""
-    # Everything very far out shares the outermost cell: no two points get further apart by that.
-    return int(np.floor(min(max(coordinate * scale, -_FARTHEST_CELL), _FARTHEST_CELL)))
+    """Return in which half cell `coordinate` lies, along one axis."""
+    # Everything very far out shares the outermost one: no two points get further apart by that.
+    return int(np.floor(min(max(coordinate * scale, -_FARTHEST), _FARTHEST)))
 
 
 @kernel
 def locate(x, scale):
-    """Return the cell of pattern `x` along its first three axes, 0 along those it lacks."""
+    """Return the half cell of `x` along its first three axes, 0 along those it lacks."""
     j = place(x[1], scale) if len(x) > 1 else 0
     k = place(x[2], scale) if len(x) > 2 else 0
     return place(x[0], scale), j, k
 
 
 @kernel
-def bucket_of(cell, n_buckets):
-    """Return the bucket of a cell; `n_buckets` is a power of two."""
-    i, j, k = cell
-    code = (i * 73856093) ^ (j * 19349663) ^ (k * 83492791)
-    return (code ^ (code >> 15)) & (n_buckets - 1)
+def hashed(i, j, k, n_buckets):
+    """Return the bucket of cell (i, j, k); `n_buckets` is a power of two."""
+    return ((i * 73856093 + j * 19349663 + k * 83492791) >> 12) & (n_buckets - 1)
 
 
 @kernel
-def closer(x, centers, j, best, best_d2):
-    """Return the nearer of centre `j` and the best so far; of equals, the lower index."""
+def bucket_of(x, scale, n_buckets):
+    """Return the bucket of the cell in which `x` lies."""
+    i, j, k = locate(x, scale)
+    return hashed(i >> 1, j >> 1, k >> 1, n_buckets)
+
+
+@inlined
+def closer(x, centers, c, best, best_d2):
+    """Return the nearer of centre `c` and the best so far; of equals, the lower index."""
     d2 = 0.0
-    for i in range(len(x)):
-        gap = x[i] - centers[j, i]
+    for axis in range(len(x)):
+        gap = x[axis] - centers[c, axis]
         d2 += gap * gap
-    if d2 < best_d2 or (d2 == best_d2 and j < best):
-        return j, d2
-    return best, best_d2
-
-
-@kernel
-def search_shell(x, centers, heads, nexts, cell, radius, best, best_d2):
-    """Return the best of the centres whose cell is `radius` cells away, and the best so far."""
-    i, j, k = cell
-    j_radius = radius if len(x) > 1 else 0
-    k_radius = radius if len(x) > 2 else 0
-    for di in range(-radius, radius + 1):
-        for dj in range(-j_radius, j_radius + 1):
-            for dk in range(-k_radius, k_radius + 1):
-                if max(abs(di), abs(dj), abs(dk)) == radius:
-                    c = heads[bucket_of((i + di, j + dj, k + dk), len(heads))]
-                    while c >= 0:
-                        best, best_d2 = closer(x, centers, c, best, best_d2)
-                        c = nexts[c]
-    return best, best_d2
+    # & and |, unlike `and` and `or`, leave the processor no branch to guess wrong.
+    better = (d2 < best_d2) | ((d2 == best_d2) & (c < best))
+    return (c if better else best), (d2 if better else best_d2)
 
 
 @kernel
 def nearest(x, centers, n, heads, nexts, scale, reach):
     """Return the nearest of the first `n` centres and its squared distance.
 
-    Shells further than `reach` are not searched: what is returned is then some centre, or none
-    (index ``len(centers)``, distance infinite), not nearer than `reach` cells.
+    The search ends at `reach` vigilances: what is returned is then some centre, or none (index
+    ``len(centers)``, distance infinite), not nearer than that.
     """
+    at_i, at_j, at_k = locate(x, scale)
     best, best_d2 = len(centers), np.inf
-    cell = locate(x, scale)
-    radius = 0
-    while (2 * radius + 1) ** min(len(x), 3) <= n:
-        best, best_d2 = search_shell(x, centers, heads, nexts, cell, radius, best, best_d2)
-        # The centres not seen yet are at least `radius` cells away, rounding apart.
-        if radius == reach or math.sqrt(best_d2) * scale < radius * _A_HAIR_LESS:
+    radius = 1
+    while True:
+        first_i, last_i = (at_i - radius) >> 1, (at_i + radius) >> 1
+        first_j, last_j = ((at_j - radius) >> 1, (at_j + radius) >> 1) if len(x) > 1 else (0, 0)
+        first_k, last_k = ((at_k - radius) >> 1, (at_k + radius) >> 1) if len(x) > 2 else (0, 0)
+        if (last_i - first_i + 1) * (last_j - first_j + 1) * (last_k - first_k + 1) > n:
+            break
+        for i in range(first_i, last_i + 1):
+            for j in range(first_j, last_j + 1):
+                for k in range(first_k, last_k + 1):
+                    c = heads[hashed(i, j, k, len(heads))]
+                    while c >= 0:
+                        best, best_d2 = closer(x, centers, c, best, best_d2)
+                        c = nexts[c]
+        # Centres outside the box are at least `radius` half cells away, rounding apart.
+        if radius >= reach or math.sqrt(best_d2) * scale < radius * _A_HAIR_LESS:
             return best, best_d2
-        radius += 1
-    for c in range(n):  # fewer centres than cells in the next shell
+        radius *= 2
+    for c in range(n):  # there are fewer centres than cells in the box
         best, best_d2 = closer(x, centers, c, best, best_d2)
     return best, best_d2
 
 
 @kernel
-def link(j, bucket, heads, nexts):
-    """Put centre `j` into `bucket`."""
-    nexts[j] = heads[bucket]
-    heads[bucket] = j
+def link(c, bucket, heads, nexts):
+    """Put centre `c` into `bucket`."""
+    nexts[c] = heads[bucket]
+    heads[bucket] = c
 
 
 @kernel
-def unlink(j, bucket, heads, nexts):
-    """Take centre `j` out of `bucket`."""
-    if heads[bucket] == j:
-        heads[bucket] = nexts[j]
+def unlink(c, bucket, heads, nexts):
+    """Take centre `c` out of `bucket`."""
+    if heads[bucket] == c:
+        heads[bucket] = nexts[c]
         return
-    i = heads[bucket]
-    while nexts[i] != j:
-        i = nexts[i]
-    nexts[i] = nexts[j]
+    before = heads[bucket]
+    while nexts[before] != c:
+        before = nexts[before]
+    nexts[before] = nexts[c]
 
 
 @kernel
@@ -128,5 +138,5 @@ def link_all(centers, n, heads, nexts, scale):
     """Build the table of the first `n` centres anew."""
     for bucket in range(len(heads)):
         heads[bucket] = -1
-    for j in range(n):
-        link(j, bucket_of(locate(centers[j], scale), len(heads)), heads, nexts)
+    for c in range(n):
+        link(c, bucket_of(centers[c], scale, len(heads)), heads, nexts)

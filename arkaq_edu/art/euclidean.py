@@ -13,7 +13,7 @@ from sklearn.utils.validation import check_is_fitted, validate_data
 
 from .._checks import array, integer, number
 from .._compiled import kernel
-from ._grid import ANY_DISTANCE, bucket_of, cells_per_unit, link, link_all, locate, nearest, unlink
+from ._grid import ANY_DISTANCE, bucket_of, half_cells_per_unit, link, link_all, nearest, unlink
 
 
 @kernel
@@ -29,10 +29,10 @@ def learn(X, start, labels, centers, counts, n, heads, nexts, scale, vigilance, 
         if math.sqrt(d2) < vigilance:
             counts[j] += 1
             eta = rate if rate > 0 else 1.0 / counts[j]
-            old = bucket_of(locate(centers[j], scale), len(heads))
+            old = bucket_of(centers[j], scale, len(heads))
             for i in range(len(x)):
                 centers[j, i] += eta * (x[i] - centers[j, i])
-            new = bucket_of(locate(centers[j], scale), len(heads))
+            new = bucket_of(centers[j], scale, len(heads))
             if new != old:
                 unlink(j, old, heads, nexts)
                 link(j, new, heads, nexts)
@@ -43,7 +43,7 @@ def learn(X, start, labels, centers, counts, n, heads, nexts, scale, vigilance, 
             n += 1
             centers[j] = x
             counts[j] = 1
-            link(j, bucket_of(locate(x, scale), len(heads)), heads, nexts)
+            link(j, bucket_of(x, scale, len(heads)), heads, nexts)
         else:
             j, d2 = nearest(x, centers, n, heads, nexts, scale, ANY_DISTANCE)
         labels[t] = j
@@ -77,7 +77,7 @@ class EuclideanART(ClusterMixin, BaseEstimator):
     patterns, is ``learning_rate="count"``.
 
     The work per pattern does not grow with the number of centres as long as these differ in their
-    first three features and lie within 10**9 vigilances of the origin; the centres are those of a
+    first three features and lie within 10**8 vigilances of the origin; the centres are those of a
     search through all of them, to the last bit.
 
     Parameters
@@ -283,14 +283,17 @@ class EuclideanART(ClusterMixin, BaseEstimator):
 
     @property
     def cluster_centers_(self) -> NDArray[np.float64]:
+        """The centres, shape (n_clusters, n_features), in the order of their founding (a copy)."""
         return self._centers[: self._n].copy()
 
     @property
     def counts_(self) -> NDArray[np.int64]:
+        """How many patterns each centre has learned (a copy)."""
         return self._counts[: self._n].copy()
 
     @property
     def n_clusters_(self) -> int:
+        """Number of centres."""
         return self._n
 
     def __sklearn_is_fitted__(self) -> bool:
@@ -323,7 +326,7 @@ class EuclideanART(ClusterMixin, BaseEstimator):
         n, (_, n_features) = self._n, self._centers.shape
         centers, counts = np.empty((capacity, n_features)), np.empty(capacity, np.int64)
         centers[:n], counts[:n] = self._centers[:n], self._counts[:n]
-        self._scale = cells_per_unit(self._settings[0])
+        self._scale = half_cells_per_unit(self._settings[0])
         heads = np.empty(2 << capacity.bit_length(), np.int64)
         nexts = np.empty(capacity, np.int64)
         link_all(centers, n, heads, nexts, self._scale)
