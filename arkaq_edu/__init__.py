@@ -28,7 +28,7 @@ __getattr__, __dir__, __all__ = _lazy.attach(
         "arkaq": ["Arkaq"],
         "art": ["EuclideanART"],
         "kalman": ["KalmanFilter", "constant_velocity", "kalman_batch"],
-        "mdp": ["QLearner"],
+        "mdp": ["MDP", "QLearner", "value_iteration"],
     },
 )  # fmt: skip
 

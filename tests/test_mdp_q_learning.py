@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from arkaq_edu.mdp import QLearner, q_learning
+from arkaq_edu.mdp import QLearner, kernels
 
 
 def optimal_q(T, R, gamma, sweeps=5000):
@@ -155,16 +155,17 @@ def test_replay_is_update_in_order_to_the_last_bit(seed, alpha):
 
 
 def test_kernels_without_compilation_give_the_same_bits():
-    plain = {name: getattr(q_learning, name) for name in ("_backup", "_replay", "_power")}
-    if not hasattr(plain["_backup"], "py_func"):
+    if not hasattr(kernels.backup, "py_func"):
         pytest.skip("nothing is compiled here")
     code = (
-        "import numpy as np; from arkaq_edu.mdp import QLearner\n"
+        "import numpy as np; from arkaq_edu.mdp import MDP, QLearner, practise\n"
         "rng = np.random.default_rng(3); q = QLearner(4, 3, 0.3, 0.9, rng=0)\n"
         "for _ in range(300):\n"
         "    s, t = map(int, rng.integers(4, size=2)); a = int(rng.integers(3))\n"
         "    q.update(s, a, rng.normal(), t, rng.random() < .1, int(rng.integers(1, 12)))\n"
         "q.replay([0, 1], [1, 1], [2.0, 3.0], [1, 0], False)\n"
+        "T = rng.dirichlet(np.ones(4), size=(3, 4))\n"
+        "practise(MDP(T, rng.normal(size=(4, 3)), 0.9), q, 500, temperature=0.3)\n"
         "acts = [q.boltzmann(i % 4, 0.1) for i in range(50)] + [q.greedy(0) for i in range(9)]\n"
         "print(q.Q.tobytes().hex(), q.visits.tolist(), acts)\n"
     )

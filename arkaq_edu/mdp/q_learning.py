@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any
 
@@ -10,113 +9,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu._checks import array, integer, number
-from arkaq_edu._compiled import kernel
-
-# Value and count of a pair lie side by side: one array is cheaper to hand to a kernel than two.
-_PAIR = np.dtype([("Q", np.float64), ("visits", np.int64)])
-
-
-# Handed to a kernel as the learning rate, this stands for one over the number of visits.
-_ONE_OVER_VISITS = -1.0
-
-
-@kernel
-def _power(x, n):
-    """Return x**n by squaring: the same bits compiled or not, which ``**`` does not promise."""
-    power = 1.0
-    while n > 0:
-        if n & 1:
-            power *= x
-        x *= x
-        n >>= 1
-    return power
-
-
-@kernel
-def _backup(pairs, s, a, r, s_next, terminated, n_steps, alpha, gamma):
-    """Equation 2.12 for one experience; the change of Q(s, a), or NaN where it is refused."""
-    Q = pairs["Q"]
-    n_states, n_actions = Q.shape
-    if not (0 <= s < n_states and 0 <= a < n_actions and 0 <= s_next < n_states and n_steps > 0):
-        return math.nan
-    target = r
-    if not terminated:
-        best = Q[s_next, 0]
-        for b in range(1, n_actions):
-            best = max(best, Q[s_next, b])
-        target += _power(gamma, n_steps) * best
-    n = pairs["visits"][s, a] + 1
-    if alpha == _ONE_OVER_VISITS:
-        alpha = 1 / n
-    old = Q[s, a]
-    # Not old + alpha (target - old): so alpha = 1 takes the target over to the last bit.
-    new = (1 - alpha) * old + alpha * target
-    if not math.isfinite(new):
-        return math.nan
-    Q[s, a] = new
-    pairs["visits"][s, a] = n
-    return new - old
-
-
-@kernel
-def _replay(pairs, s, a, r, s_next, terminated, n_steps, alphas, gamma, changes):
-    """`_backup` over arrays; alphas[n - 1] is for the n-th visit, its last entry for all later."""
-    for t in range(len(s)):
-        n = min(pairs["visits"][s[t], a[t]], len(alphas) - 1)
-        changes[t] = _backup(
-            pairs, s[t], a[t], r[t], s_next[t], terminated[t], n_steps[t], alphas[n], gamma
-        )
-        if math.isnan(changes[t]):
-            return t
-    return -1
-
-
-@kernel
-def _weight(q, top, temperature):
-    """exp((q - top) / T); halved on the way, so that no difference of two floats overflows."""
-    return math.exp(2 * ((q / 2 - top / 2) / temperature))
-
-
-@kernel
-def _draw_boltzmann(pairs, s, temperature, u):
-    """Equation 3.2: the action at quantile u of the Boltzmann distribution; -1 where refused."""
-    Q = pairs["Q"]
-    if not (0 <= s < Q.shape[0] and temperature > 0):
-        return -1
-    top = Q[s, 0]
-    for a in range(1, Q.shape[1]):
-        top = max(top, Q[s, a])
-    total = 0.0
-    for a in range(Q.shape[1]):
-        total += _weight(Q[s, a], top, temperature)
-    below = 0.0
-    for a in range(Q.shape[1]):
-        below += _weight(Q[s, a], top, temperature)
-        if u * total < below:
-            return a
-    return -1
-
-
-@kernel
-def _draw_greedy(pairs, s, u):
-    """Equation 3.3: one of the n best actions, each with probability 1/n; -1 where refused."""
-    Q = pairs["Q"]
-    if not 0 <= s < Q.shape[0]:
-        return -1
-    top, ties = -math.inf, 0
-    for a in range(Q.shape[1]):
-        if not math.isfinite(Q[s, a]):
-            return -1
-        if Q[s, a] > top:
-            top, ties = Q[s, a], 0
-        ties += Q[s, a] == top
-    skip = int(u * ties)
-    for a in range(Q.shape[1]):
-        if Q[s, a] == top:
-            if skip == 0:
-                return a
-            skip -= 1
-    return -1
+from arkaq_edu.mdp._indices import indices
+from arkaq_edu.mdp.choice import softmax
+from arkaq_edu.mdp.kernels import (
+    ONE_OVER_VISITS,
+    PAIR,
+    backup,
+    draw_boltzmann,
+    draw_greedy,
+    replay,
+)
 
 
 class _Typed:
@@ -141,10 +43,10 @@ class _Typed:
 
 
 _BACKUP = _Typed(
-    _backup, "int64", "int64", "float64", "int64", "boolean", "int64", "float64", "float64"
+    backup, "int64", "int64", "float64", "int64", "boolean", "int64", "float64", "float64"
 )
-_BOLTZMANN = _Typed(_draw_boltzmann, "int64", "float64", "float64")
-_GREEDY = _Typed(_draw_greedy, "int64", "float64")
+_BOLTZMANN = _Typed(draw_boltzmann, "int64", "float64", "float64")
+_GREEDY = _Typed(draw_greedy, "int64", "float64")
 
 
 class QLearner:
@@ -156,8 +58,8 @@ class QLearner:
         Size of the table, each at least 1. States and actions are counted from 0.
     alpha : float, "1/visits" or callable
         The learning rate: a constant in [0, 1]; ``"1/visits"``, which makes Q(s, a) the mean of
-        its targets; or a function that takes n, the how-manieth visit of the pair this is (1, 2,
-        ...), and returns a number in [0, 1].
+        its targets; or a function that takes the number n of this visit of the pair (1, 2, ...)
+        and returns a rate in [0, 1].
     gamma : float
         The discount rate per step, in [0, 1].
     initial : float, default 0.0
@@ -218,7 +120,7 @@ class QLearner:
         shape = integer("n_states", n_states, 1), integer("n_actions", n_actions, 1)
         self.alpha = alpha
         self.gamma = gamma
-        self._pairs = np.empty(shape, _PAIR)
+        self._pairs = np.empty(shape, PAIR)
         self._pairs["Q"] = number("initial", initial)
         self._pairs["visits"] = 0
         self.rng = np.random.default_rng(rng)
@@ -246,7 +148,7 @@ class QLearner:
         if callable(value):
             self._rate = None
         elif isinstance(value, str):
-            self._rate = _ONE_OVER_VISITS
+            self._rate = ONE_OVER_VISITS
         else:
             self._rate = value = number("alpha", value, 0, 1)
         self._alpha = value
@@ -353,12 +255,12 @@ class QLearner:
         """
         n_states, n_actions = self._pairs.shape
         columns = [
-            _indices("s", s, 0, n_states - 1),
-            _indices("a", a, 0, n_actions - 1),
+            indices("s", s, 0, n_states - 1),
+            indices("a", a, 0, n_actions - 1),
             array("r", r, (None,) * np.ndim(r)),
-            _indices("s_next", s_next, 0, n_states - 1),
+            indices("s_next", s_next, 0, n_states - 1),
             np.asarray(terminated, dtype=bool),
-            _indices("n_steps", n_steps, 1, None),
+            indices("n_steps", n_steps, 1, None),
         ]
         try:
             together = np.broadcast_arrays(*np.atleast_1d(*columns))
@@ -367,11 +269,14 @@ class QLearner:
             raise ValueError(f"the columns must have one length, got shapes {lengths}") from None
         if together[0].ndim != 1:
             raise ValueError(f"the columns must have shape (N,), got {together[0].shape}")
-        rows = [np.ascontiguousarray(c) for c in together]
-        changes = np.empty(len(rows[0]))
-        bad = _replay(self._pairs, *rows, self._rates(rows[0], rows[1]), self._gamma, changes)
+        s, a, *rest = (np.ascontiguousarray(c) for c in together)
+        visits = self.visits.copy()
+        np.add.at(visits, (s, a), 1)
+        changes = np.empty(len(s))
+        rates = self._rates(int(visits.max()))
+        bad = replay(self._pairs, s, a, *rest, rates, self._gamma, changes)
         if bad >= 0:
-            raise ValueError(f"r must leave Q finite, got {rows[2][bad]} at ({bad},)")
+            raise ValueError(f"r must leave Q finite, got {rest[0][bad]} at ({bad},)")
         return changes
 
     def probabilities(self, s: int, temperature: float) -> NDArray[np.float64]:
@@ -402,11 +307,7 @@ class QLearner:
         >>> learner.probabilities(0, temperature=1.0)
         array([0.25, 0.75])
         """
-        row = self.Q[integer("s", s, 0, len(self.Q) - 1)]
-        T = number("temperature", temperature, 0, open_low=True)
-        top = row.max()
-        weights = np.array([_weight(q, top, T) for q in row])
-        return weights / weights.sum()
+        return softmax(self.Q[integer("s", s, 0, len(self.Q) - 1)], temperature)
 
     def boltzmann(self, s: int, temperature: float) -> int:
         """Draw an action with the `probabilities` of `s` at this temperature.
@@ -546,7 +447,7 @@ class QLearner:
         if missing:
             raise ValueError(f"state must hold Q, visits and rng, got no {sorted(missing)[0]}")
         Q = array("Q", state["Q"], self._pairs.shape)
-        visits = _indices("visits", state["visits"], 0, None)
+        visits = indices("visits", state["visits"], 0, None)
         if visits.shape != Q.shape:
             raise ValueError(f"visits must have shape {Q.shape}, got {visits.shape}")
         try:
@@ -560,13 +461,11 @@ class QLearner:
     def _schedule(self, n: int) -> float:
         return number(f"alpha({n})", self._alpha(n), 0, 1)  # type: ignore[operator]
 
-    def _rates(self, s: NDArray[np.int64], a: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Return the learning rates of visits 1, 2, ... as far as these pairs will need them."""
+    def _rates(self, n_visits: int) -> NDArray[np.float64]:
+        """Return the learning rates of visits 1, 2, ..., or one that holds for all."""
         if self._rate is not None:
             return np.array([self._rate])
-        visits = self.visits.copy()
-        np.add.at(visits, (s, a), 1)
-        return np.array([self._schedule(n) for n in range(1, int(visits.max()) + 1)] or [1.0])
+        return np.array([self._schedule(n) for n in range(1, max(n_visits, 1) + 1)])
 
     def _bad_row(self, s: Any) -> ValueError:
         """Say why no action of `s` could be drawn, off the fast path."""
@@ -587,16 +486,3 @@ class QLearner:
         except ValueError as error:
             return error
         return ValueError(f"r must leave Q({s}, {a}) finite, got {r!r}")
-
-
-def _indices(name: str, value: ArrayLike, low: int, high: int | None) -> NDArray[np.int64]:
-    """Return `value` as int64 in [low, high], or raise ``ValueError`` as `integer` does."""
-    x = np.asarray(value)
-    if x.size and x.dtype.kind not in "iu":
-        raise ValueError(f"{name} must hold integers, got dtype {x.dtype}")
-    outside = (x < low) if high is None else (x < low) | (x > high)
-    if outside.any():
-        where = tuple(int(i) for i in np.argwhere(outside)[0])
-        allowed = f">= {low}" if high is None else f"in [{low}, {high}]"
-        raise ValueError(f"{name} must hold integers {allowed}, got {x[where]} at {where}")
-    return x.astype(np.int64)

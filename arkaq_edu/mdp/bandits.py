@@ -1,0 +1,312 @@
+"""Exploration against exploitation: k gambling machines, each with its own chance to pay."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from arkaq_edu._checks import array, integer, number
+from arkaq_edu.mdp._indices import indices
+from arkaq_edu.mdp.choice import Schedule, argmax_shared, softmax, value_at
+
+
+class Bandit:
+    """k machines; machine i pays 1 with probability p_i, and else 0.
+
+    Parameters
+    ----------
+    p : array_like, shape (k,)
+        The chance of each machine, in [0, 1]; at least one machine.
+
+    Attributes
+    ----------
+    p : ndarray, shape (k,)
+    best : float
+        The highest chance: what a pull earns for one who knows.
+
+    Raises
+    ------
+    ValueError
+        If a chance is outside [0, 1] or there is no machine.
+
+    References
+    ----------
+    Thesis 2.1.3.
+
+    Examples
+    --------
+    >>> bandit = Bandit([0.2, 0.5, 0.7])
+    >>> bandit.best
+    0.7
+    >>> bandit.pull([2, 2, 2, 0], rng=0)
+    array([1., 1., 1., 1.])
+    """
+
+    def __init__(self, p: ArrayLike) -> None:
+        self.p = array("p", p, (None,)).copy()
+        if not self.p.size or (self.p < 0).any() or (self.p > 1).any():
+            raise ValueError(f"p must hold at least one probability in [0, 1], got {self.p}")
+        self.p.setflags(write=False)
+        self.best = float(self.p.max())
+
+    def pull(self, arms: ArrayLike, rng: np.random.Generator | int) -> NDArray[np.float64]:
+        """Pull machines and return what each pays, 0.0 or 1.0.
+
+        Parameters
+        ----------
+        arms : array_like of int
+            The machine of each pull; of any shape.
+        rng : numpy.random.Generator or int
+            Where the draws come from.
+
+        Returns
+        -------
+        ndarray
+            Of the shape of `arms`.
+
+        Raises
+        ------
+        ValueError
+            If there is no such machine.
+        """
+        chances = self.p[indices("arms", arms, 0, len(self.p) - 1)]
+        return (np.random.default_rng(rng).random(chances.shape) < chances).astype(np.float64)
+
+
+class Strategy(Protocol):
+    """A way to choose a machine, for many players at once: write your own like this."""
+
+    def choose(
+        self, counts: NDArray[np.int64], means: NDArray[np.float64], rng: np.random.Generator
+    ) -> NDArray[np.intp]:
+        """Choose a machine for each of N players.
+
+        Parameters
+        ----------
+        counts : ndarray of int, shape (N, k)
+            How often each player has pulled each machine.
+        means : ndarray, shape (N, k)
+            What each machine has paid that player on average; 0 for one never pulled.
+        rng : numpy.random.Generator
+            Where the draws come from.
+
+        Returns
+        -------
+        ndarray of int, shape (N,)
+        """
+        ...  # pragma: no cover
+
+
+@dataclass(frozen=True)
+class Random:
+    """Explore always: every machine alike.
+
+    Examples
+    --------
+    >>> play(Bandit([0.2, 0.7]), Random(), pulls=5, rng=0).arms
+    array([[1, 1, 0, 0, 1]])
+    """
+
+    def choose(
+        self, counts: NDArray[np.int64], means: NDArray[np.float64], rng: np.random.Generator
+    ) -> NDArray[np.intp]:
+        """Choose a machine for each player."""
+        return rng.integers(counts.shape[1], size=len(counts))
+
+
+@dataclass(frozen=True)
+class EpsilonGreedy:
+    """Explore with probability epsilon, any machine alike; else pull the best one so far.
+
+    Parameters
+    ----------
+    epsilon : float or callable, default 0.1
+        In [0, 1], or a function of the pull n = 1, 2, ... that returns such a number.
+
+    Raises
+    ------
+    ValueError
+        If `epsilon` is outside [0, 1].
+
+    Examples
+    --------
+    >>> np.bincount(play(Bandit([0.2, 0.7]), EpsilonGreedy(0.1), pulls=1000, rng=0).arms[0])
+    array([ 54, 946])
+    """
+
+    epsilon: float | Schedule = 0.1
+
+    def __post_init__(self) -> None:
+        if not callable(self.epsilon):
+            number("epsilon", self.epsilon, 0, 1)
+
+    def choose(
+        self, counts: NDArray[np.int64], means: NDArray[np.float64], rng: np.random.Generator
+    ) -> NDArray[np.intp]:
+        """Choose a machine for each player."""
+        epsilon = number("epsilon", value_at(self.epsilon, _pull(counts)), 0, 1)
+        explore = rng.random(len(counts)) < epsilon
+        return np.where(explore, Random().choose(counts, means, rng), argmax_shared(means, rng))
+
+
+@dataclass(frozen=True)
+class Boltzmann:
+    """Pull each machine with a chance that grows with its mean (equation 3.2).
+
+    Parameters
+    ----------
+    temperature : float or callable, default 0.1
+        T > 0, or a function of the pull n = 1, 2, ... that returns such a number.
+
+    Raises
+    ------
+    ValueError
+        If `temperature` is not above 0.
+
+    References
+    ----------
+    Thesis chapter 3 (equation 3.2).
+
+    Examples
+    --------
+    >>> np.bincount(play(Bandit([0.2, 0.7]), Boltzmann(0.1), pulls=1000, rng=0).arms[0])
+    array([   0, 1000])
+    """
+
+    temperature: float | Schedule = 0.1
+
+    def __post_init__(self) -> None:
+        if not callable(self.temperature):
+            number("temperature", self.temperature, 0, open_low=True)
+
+    def choose(
+        self, counts: NDArray[np.int64], means: NDArray[np.float64], rng: np.random.Generator
+    ) -> NDArray[np.intp]:
+        """Choose a machine for each player."""
+        chances = softmax(means, value_at(self.temperature, _pull(counts))).cumsum(axis=1)
+        return (rng.random((len(counts), 1)) * chances[:, -1:] >= chances).sum(axis=1)
+
+
+@dataclass(frozen=True)
+class UCB:
+    """Pull the machine that could be best: highest mean plus c sqrt(ln n / pulls of it).
+
+    Parameters
+    ----------
+    c : float, default sqrt(2)
+        How wide the margin is, at least 0. With sqrt(2) it is UCB1, whose regret after n pulls is
+        at most sum_i 8 ln(n) / d_i + (1 + pi^2 / 3) d_i, with d_i = max(p) - p_i > 0.
+
+    Raises
+    ------
+    ValueError
+        If `c` is negative.
+
+    References
+    ----------
+    P. Auer, N. Cesa-Bianchi, P. Fischer, "Finite-time analysis of the multiarmed bandit problem",
+    Machine Learning 47, 2002.
+
+    Examples
+    --------
+    >>> sorted(play(Bandit([0.2, 0.7, 0.4]), UCB(), pulls=3, rng=0).arms[0].tolist())
+    [0, 1, 2]
+    """
+
+    c: float = 2**0.5
+
+    def __post_init__(self) -> None:
+        number("c", self.c, 0)
+
+    def choose(
+        self, counts: NDArray[np.int64], means: NDArray[np.float64], rng: np.random.Generator
+    ) -> NDArray[np.intp]:
+        """Choose a machine for each player."""
+        n = np.maximum(counts.sum(axis=1, keepdims=True), 1)
+        margin = self.c * np.sqrt(np.log(n) / np.maximum(counts, 1))
+        return argmax_shared(np.where(counts > 0, means + margin, np.inf), rng)
+
+
+def _pull(counts: NDArray[np.int64]) -> int:
+    """Return which pull comes next, counted from 1: all players are at the same one."""
+    return int(counts[0].sum()) + 1
+
+
+class Play(NamedTuple):
+    """What N players did, pull by pull.
+
+    Attributes
+    ----------
+    arms : ndarray of int, shape (N, pulls)
+        The machine of each pull.
+    rewards : ndarray, shape (N, pulls)
+        What it paid.
+    expected : ndarray, shape (N, pulls)
+        What it pays on average: the measure of the choice, without the luck.
+    """
+
+    arms: NDArray[np.int64]
+    rewards: NDArray[np.float64]
+    expected: NDArray[np.float64]
+
+
+def play(
+    bandit: Bandit,
+    strategy: Strategy,
+    pulls: int,
+    *,
+    players: int = 1,
+    rng: np.random.Generator | int,
+) -> Play:
+    """Let players pull, each on machines of their own, all by one strategy.
+
+    Parameters
+    ----------
+    bandit : Bandit
+        The machines.
+    strategy : Strategy
+        `Random`, `EpsilonGreedy`, `Boltzmann`, `UCB`, or any object with their `choose`.
+    pulls : int
+        How many pulls each player has, at least 1.
+    players : int, default 1
+        How many players, at least 1: a claim about a strategy needs many.
+    rng : numpy.random.Generator or int
+        Where all draws come from.
+
+    Returns
+    -------
+    Play
+
+    Raises
+    ------
+    ValueError
+        If `pulls` or `players` is below 1.
+
+    References
+    ----------
+    Thesis 2.1.3.
+
+    Examples
+    --------
+    >>> from arkaq_edu.mdp import regret
+    >>> bandit = Bandit([0.2, 0.5, 0.7])
+    >>> game = play(bandit, UCB(), pulls=1000, players=100, rng=0)
+    >>> regret(game.expected, bandit.best).mean(axis=0)[[9, 99, 999]].round()
+    array([ 2., 12., 43.])
+    """
+    pulls, players = integer("pulls", pulls, 1), integer("players", players, 1)
+    rng = np.random.default_rng(rng)
+    everyone = np.arange(players)
+    counts = np.zeros((players, len(bandit.p)), dtype=np.int64)
+    totals = np.zeros(counts.shape)
+    arms = np.empty((pulls, players), dtype=np.int64)
+    rewards = np.empty((pulls, players))
+    for t in range(pulls):
+        arms[t] = strategy.choose(counts, totals / np.maximum(counts, 1), rng)
+        rewards[t] = bandit.pull(arms[t], rng)
+        counts[everyone, arms[t]] += 1
+        totals[everyone, arms[t]] += rewards[t]
+    return Play(arms.T, rewards.T, bandit.p[arms.T])

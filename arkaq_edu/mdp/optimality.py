@@ -1,0 +1,190 @@
+"""What "optimal" means: three models of how much the future counts (thesis 2.1.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arkaq_edu._checks import array, number
+from arkaq_edu.mdp._indices import indices
+from arkaq_edu.mdp.model import MDP
+from arkaq_edu.mdp.planning import policy_iteration, policy_model
+
+
+def delayed_rewards(
+    delays: Sequence[int] = (2, 5, 6),
+    rewards: Sequence[float] = (2.0, 10.0, 11.0),
+    gamma: float = 0.9,
+) -> MDP:
+    """Return the world of figure 2.2: choose once, wait, then earn the same at every step.
+
+    Parameters
+    ----------
+    delays : sequence of int, default (2, 5, 6)
+        How many steps of each choice earn nothing, the choice itself included; each at least 1.
+    rewards : sequence of float, default (2, 10, 11)
+        What each step after that earns.
+    gamma : float, default 0.9
+        The discount rate. The thesis does not name it; its figures, 16.2, 59 and 58.5, are those
+        of 0.9.
+
+    Returns
+    -------
+    MDP
+        State 0 is where the choice is made; action i leads along chain i.
+
+    Raises
+    ------
+    ValueError
+        If the lengths differ or a delay is not an integer >= 1.
+
+    References
+    ----------
+    Thesis 2.1.1, figure 2.2. L. Kaelbling, M. Littman, A. Moore, "Reinforcement learning: a
+    survey", Journal of Artificial Intelligence Research 4, 1996, figure 2.
+
+    Examples
+    --------
+    >>> from arkaq_edu.mdp import finite_horizon
+    >>> world = delayed_rewards()
+    >>> finite_horizon(world, 5)[-1, 0]
+    array([6., 0., 0.])
+    >>> discounted(world)[0].round(1)
+    array([16.2, 59. , 58.5])
+    >>> average_reward(world)[0]
+    array([ 2., 10., 11.])
+    """
+    waits = indices("delays", delays, 1, None)
+    n = len(waits)
+    earned = array("rewards", rewards, (n,))
+    n_states = 1 + int(waits.sum())
+    T = np.zeros((n, n_states, n_states))
+    R = np.zeros((n_states, n))
+    last = waits.cumsum()
+    for a in range(n):
+        first = last[a] - waits[a] + 1
+        T[a, 0, first] = 1
+        for s in range(first, last[a]):
+            T[:, s, s + 1] = 1
+        T[:, last[a], last[a]] = 1
+        R[last[a]] = earned[a]
+    return MDP(T, R, number("gamma", gamma, 0, 1, open_high=True), np.eye(n_states)[0])
+
+
+def discounted(mdp: MDP) -> NDArray[np.float64]:
+    """Return what each first action earns in the discounted infinite-horizon model (2.2).
+
+    Parameters
+    ----------
+    mdp : MDP
+        The model, with its discount rate.
+
+    Returns
+    -------
+    ndarray, shape (S, A)
+        Q*: the action, then the best actions for ever, each reward discounted to now.
+
+    Notes
+    -----
+    What is best depends on gamma, as it depends on h in the finite-horizon model; it depends on
+    neither in the average-reward model. Under figure 2.2 the thesis says that both other models
+    are "dependent on the horizon length".
+
+    References
+    ----------
+    Thesis 2.1.1 (equation 2.2).
+
+    Examples
+    --------
+    >>> discounted(MDP(T=[[[1]], [[1]]], R=[[1, 3]], gamma=0.5))
+    array([[4., 6.]])
+    """
+    return mdp.action_values(policy_iteration(mdp)[0])
+
+
+def average_reward(mdp: MDP) -> NDArray[np.float64]:
+    """Return what each first action earns per step in the long run (equation 2.3).
+
+    Parameters
+    ----------
+    mdp : MDP
+        The model; its discount rate is not used. Any structure will do: where several sets of
+        states are never left again, the best is headed for.
+
+    Returns
+    -------
+    ndarray, shape (S, A)
+        The long-run average of the rewards when the action is followed by the best ones. The
+        action's own reward does not matter: it happens once.
+
+    Notes
+    -----
+    Howard's policy iteration for several recurrent classes. A policy is improved where another
+    action leads to a higher average; only where none does, where one earns more on the way (a
+    higher bias).
+
+    References
+    ----------
+    Thesis 2.1.1 (equation 2.3). M. Puterman, Markov Decision Processes, Wiley, 1994, section 9.2.
+
+    Examples
+    --------
+    >>> swap, stay = [[0, 1], [1, 0]], [[1, 0], [0, 1]]
+    >>> average_reward(MDP(T=[swap, stay], R=[[3, 0], [0, 1]], gamma=0.9))
+    array([[1.5, 1.5],
+           [1.5, 1.5]])
+    """
+    states = np.arange(mdp.n_states)
+    policy = mdp.R.argmax(axis=1)
+    while True:
+        gain, bias = _gain_and_bias(*policy_model(mdp, policy))
+        average = (mdp.T @ gain).T
+        onward = mdp.R + (mdp.T @ bias).T
+        # Rounding must not pass for an improvement: two equal actions would take turns for ever.
+        rounding = 1e-11 * (1 + np.abs(mdp.R).max() + np.abs(bias).max())
+        best = average.max(axis=1)
+        higher = best > average[states, policy] + rounding
+        onward[average < best[:, None] - rounding] = -np.inf
+        sooner = ~higher & (onward.max(axis=1) > onward[states, policy] + rounding)
+        if not (higher | sooner).any():
+            return average
+        policy = np.where(higher, average.argmax(axis=1), policy)
+        policy = np.where(sooner, onward.argmax(axis=1), policy)
+
+
+def _gain_and_bias(
+    T: NDArray[np.float64], R: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.floating]]:
+    """Return the average reward per step from each state of a chain, and the head start of each."""
+    limit = _limiting_matrix(T)
+    gain = limit @ R
+    bias = np.linalg.solve(np.eye(len(T)) - T + limit, R - gain)
+    return gain, bias
+
+
+def _limiting_matrix(T: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the share of all time that a chain spends in each state, from each start (S, S)."""
+    n = len(T)
+    paths = np.eye(n) + (T > 0)
+    for _ in range(n.bit_length()):
+        paths = np.minimum(paths @ paths, 1.0)
+    reach = paths > 0
+    recurrent = (reach == (reach & reach.T)).all(axis=1)
+    share = np.zeros((n, n))
+    for s in np.flatnonzero(recurrent):
+        if not share[s].any():
+            members = np.flatnonzero(reach[s])
+            share[np.ix_(members, members)] = _stationary(T[np.ix_(members, members)])
+    passing = ~recurrent
+    leave = np.eye(passing.sum()) - T[np.ix_(passing, passing)]
+    share[passing] = np.linalg.solve(leave, T[np.ix_(passing, recurrent)] @ share[recurrent])
+    return share
+
+
+def _stationary(T: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the distribution that an irreducible chain leaves as it is: x T = x, sum x = 1."""
+    balance = np.eye(len(T)) - T.T
+    balance[-1] = 1
+    return np.linalg.solve(balance, np.eye(len(T))[-1])
