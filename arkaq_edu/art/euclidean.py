@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 import sys
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
-from sklearn.base import BaseEstimator, ClusterMixin
-from sklearn.utils.validation import check_is_fitted, validate_data
+from numpy.typing import ArrayLike
 
 from .._checks import array, integer, number
 from .._compiled import kernel
+from ._estimator import Categories, Floats, Labels
 from ._grid import ANY_DISTANCE, bucket_of, half_cells_per_unit, link, link_all, nearest, unlink
 
 
@@ -57,7 +56,7 @@ def recall(X, labels, centers, n, heads, nexts, scale):
         labels[t] = nearest(X[t], centers, n, heads, nexts, scale, ANY_DISTANCE)[0]
 
 
-class EuclideanART(ClusterMixin, BaseEstimator):
+class EuclideanART(Categories):
     """Categories by Euclidean distance: the nearest centre learns, or a new one is founded.
 
     For each pattern `x`, in the order of presentation, the nearest centre `m` is found. If its
@@ -68,7 +67,7 @@ class EuclideanART(ClusterMixin, BaseEstimator):
     The literature knows this as leader clustering with an online k-means update. It has neither
     the F1 loops of ART2 nor its normalisation; what it shares with the family is that recognising
     and learning are one act, gated by a vigilance. Here vigilance is a distance: the smaller, the
-    more categories.
+    more categories. `predict` and `category` give the nearest centre, however far.
 
     Two choices decide whether counts of centres can be compared between programs at all. The
     comparison is strict: a pattern at a distance of exactly `vigilance` founds a centre. And the
@@ -192,112 +191,12 @@ class EuclideanART(ClusterMixin, BaseEstimator):
         taken = array("counts", counts, (len(places),))
         if (taken < 1).any() or (taken % 1 != 0).any():
             raise ValueError(f"counts must be integers >= 1, got {counts!r}")
-        self._begin(places, taken.astype(np.int64))
+        self._begin(_centers=places, _counts=taken.astype(np.int64))
         self.n_features_in_ = places.shape[1]
         return self
 
-    def fit(self, X: ArrayLike, y: Any = None) -> Self:
-        """Forget everything, then learn the patterns in the order given, once each.
-
-        Parameters
-        ----------
-        X : array-like of shape (n_samples, n_features)
-            The patterns, finite.
-        y : ignored
-            Present for scikit-learn's sake.
-
-        Raises
-        ------
-        ValueError
-            For a parameter out of range, or an `X` of the wrong shape or not finite.
-        """
-        self._parameters()
-        patterns = self._patterns(X, reset=True)
-        self._begin(patterns[:0], np.empty(0, np.int64))
-        return self._learn(patterns)
-
-    def partial_fit(self, X: ArrayLike, y: Any = None) -> Self:
-        """Learn more patterns, in the order given, with the centres there are.
-
-        Parameters, errors and result as for `fit`. A stream learned in pieces gives the same
-        centres as the stream learned whole.
-        """
-        fresh = not self.__sklearn_is_fitted__()
-        patterns = self._patterns(X, reset=fresh)
-        if fresh:
-            self._begin(patterns[:0], np.empty(0, np.int64))
-        return self._learn(patterns)
-
-    def learn_one(self, x: ArrayLike) -> int:
-        """Learn one pattern of shape (n_features,) and return its category, in microseconds.
-
-        It does to the centres what `partial_fit` does with one row; `labels_` stays as it is.
-
-        Raises
-        ------
-        ValueError
-            For a parameter out of range, or an `x` of the wrong shape or not finite.
-        """
-        if not self.__sklearn_is_fitted__():
-            return int(self.partial_fit([np.asarray(x)]).labels_[0])
-        label = np.empty(1, np.int64)
-        self._present(self._pattern(x), label)
-        return int(label[0])
-
-    def predict(self, X: ArrayLike) -> NDArray[np.int64]:
-        """Return the index of the nearest centre of each pattern; nothing is learned.
-
-        Parameters
-        ----------
-        X : array-like of shape (n_samples, n_features)
-            The patterns, finite.
-
-        Returns
-        -------
-        ndarray of shape (n_samples,)
-            Of centres equally near, the lowest index.
-
-        Raises
-        ------
-        sklearn.exceptions.NotFittedError
-            If there are no centres yet.
-        ValueError
-            For an `X` of the wrong shape or not finite.
-        """
-        check_is_fitted(self)
-        return self._recall(self._patterns(X, reset=False))
-
-    def category(self, x: ArrayLike) -> int:
-        """Return the index of the nearest centre of one pattern of shape (n_features,), quickly.
-
-        Raises
-        ------
-        sklearn.exceptions.NotFittedError
-            If there are no centres yet.
-        ValueError
-            For an `x` of the wrong shape or not finite.
-        """
-        if not self.__sklearn_is_fitted__():  # check_is_fitted itself takes ten times as long
-            check_is_fitted(self)
-        return int(self._recall(self._pattern(x))[0])
-
-    @property
-    def cluster_centers_(self) -> NDArray[np.float64]:
-        """The centres, shape (n_clusters, n_features), in the order of their founding (a copy)."""
-        return self._centers[: self._n].copy()
-
-    @property
-    def counts_(self) -> NDArray[np.int64]:
-        """How many patterns each centre has learned (a copy)."""
-        return self._counts[: self._n].copy()
-
-    @property
-    def n_clusters_(self) -> int:
-        """Number of centres."""
-        return self._n
-
-    def __sklearn_is_fitted__(self) -> bool:
-        return getattr(self, "_n", 0) > 0
+    def _wishes(self) -> tuple:
+        return self.vigilance, self.learning_rate, self.max_clusters
 
     def _parameters(self) -> tuple[float, float, int]:
         """Return vigilance, update factor (0: one over the count) and limit, validated."""
@@ -313,65 +212,19 @@ class EuclideanART(ClusterMixin, BaseEstimator):
             return vigilance, 0.0, limit
         return vigilance, number("learning_rate", self.learning_rate, 0, 1, open_low=True), limit
 
-    def _begin(self, centers: NDArray[np.float64], counts: NDArray[np.int64]) -> None:
-        """Take over `centers`, which may be none."""
-        self._given = self.vigilance, self.learning_rate, self.max_clusters
-        self._settings = self._parameters()
-        self._centers, self._counts, self._n = centers, counts, len(centers)
-        self._arrange(max(64, self._n))
-        self.labels_ = np.empty(0, np.int64)
-
     def _arrange(self, capacity: int) -> None:
-        """Move the centres to arrays with room for `capacity`, and build their table anew."""
-        n, (_, n_features) = self._n, self._centers.shape
-        centers, counts = np.empty((capacity, n_features)), np.empty(capacity, np.int64)
-        centers[:n], counts[:n] = self._centers[:n], self._counts[:n]
+        """Give the centres room for `capacity` of them, and build their table anew."""
+        super()._arrange(capacity)
         self._scale = half_cells_per_unit(self._settings[0])
-        heads = np.empty(2 << capacity.bit_length(), np.int64)
-        nexts = np.empty(capacity, np.int64)
-        link_all(centers, n, heads, nexts, self._scale)
-        self._centers, self._counts, self._heads, self._nexts = centers, counts, heads, nexts
+        self._heads = np.empty(2 << capacity.bit_length(), np.int64)
+        self._nexts = np.empty(capacity, np.int64)
+        link_all(self._centers, self._n, self._heads, self._nexts, self._scale)
 
-    def _learn(self, X: NDArray[np.float64]) -> Self:
-        labels = np.empty(len(X), np.int64)
-        self._present(X, labels)
-        self.labels_ = labels
-        return self
+    def _learn_rows(self, X: Floats, done: int, labels: Labels) -> tuple[int, int]:
+        return learn(
+            X, done, labels, self._centers, self._counts, self._n, self._heads, self._nexts,
+            self._scale, *self._settings,
+        )  # fmt: skip
 
-    def _present(self, X: NDArray[np.float64], labels: NDArray[np.int64]) -> None:
-        """Learn the rows of `X`, writing the category of each into `labels`."""
-        given = self.vigilance, self.learning_rate, self.max_clusters
-        if given != self._given:  # set_params since the last pattern
-            self._settings = self._parameters()
-            self._given = given
-            self._arrange(len(self._centers))
-        done = 0
-        while True:
-            done, self._n = learn(
-                X, done, labels, self._centers, self._counts, self._n, self._heads, self._nexts,
-                self._scale, *self._settings,
-            )  # fmt: skip
-            if done == len(X):
-                return
-            self._arrange(2 * self._n)
-
-    def _recall(self, X: NDArray[np.float64]) -> NDArray[np.int64]:
-        """Return the index of the nearest centre of each row of `X`."""
-        labels = np.empty(len(X), np.int64)
+    def _recall_rows(self, X: Floats, labels: Labels) -> None:
         recall(X, labels, self._centers, self._n, self._heads, self._nexts, self._scale)
-        return labels
-
-    def _patterns(self, X: ArrayLike, *, reset: bool) -> NDArray[np.float64]:
-        """Return `X` for the kernels: validated, and writeable, for they are compiled for that."""
-        checked: Any = validate_data(self, X, dtype=np.float64, order="C", reset=reset)
-        return np.require(checked, requirements=["C", "W"])
-
-    def _pattern(self, x: ArrayLike) -> NDArray[np.float64]:
-        """Return `x` as one row for the kernels."""
-        try:
-            row = np.array(x, dtype=np.float64)
-        except (TypeError, ValueError):
-            row = np.empty(0)
-        if row.shape != (self.n_features_in_,) or not all(map(math.isfinite, row.tolist())):
-            row = array("x", x, (self.n_features_in_,))  # refuses it, and says why
-        return row[np.newaxis]
