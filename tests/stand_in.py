@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from arkaq_edu.figures.segmentation import scale
+from arkaq_edu.arkaq import Sensing
 
 
 def triangle_stream(n=5000, rng=0):
@@ -10,5 +10,5 @@ def triangle_stream(n=5000, rng=0):
     rng = np.random.default_rng(rng)
     depth = rng.uniform(200, 4100, n)
     aside = rng.uniform(-1, 1, n) * depth * np.tan(0.49)
-    distance = np.hypot(depth, aside).clip(200, 4100)
-    return scale(distance, np.arctan2(aside, depth))
+    seen = np.column_stack([np.hypot(depth, aside), np.arctan2(aside, depth)])
+    return Sensing.thesis().scale(seen)

@@ -30,15 +30,16 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import Voronoi
 
 from .. import _checks
+from ..arkaq.sensing import Sensing
 from ..art import EuclideanART
 from . import style
 
 #: The numbers of centres the thesis prints, by vigilance (figures 5.10 to 5.14).
 THESIS_COUNTS = {0.15: 137, 0.1: 333, 0.075: 519, 0.05: 825, 0.025: 1933}
 
-# What the scaled interval [-1, 1] stands for.
-DISTANCE = (200.0, 4100.0)
-ORIENTATION = (-0.5, 0.5)
+#: What the scaled interval from -1 to 1 stands for.
+SENSING = Sensing.thesis()
+DISTANCE, ORIENTATION = zip(SENSING.low, SENSING.high, strict=True)
 
 
 class CentersPlot(NamedTuple):
@@ -48,6 +49,10 @@ class CentersPlot(NamedTuple):
     cells: PolyCollection
     centers: Line2D
     n_centers: int
+
+    def __repr__(self) -> str:
+        """Return what the picture states, so that a notebook prints it under the picture."""
+        return self.ax.get_title(loc="left") or f"{self.n_centers} centres"
 
 
 def recorded_patterns() -> NDArray[np.float64]:
@@ -60,41 +65,11 @@ def recorded_patterns() -> NDArray[np.float64]:
     """
     from ..experiments.streams import load_sightings
 
-    seen = load_sightings()
-    return scale(seen["distance"], seen["orientation"])
+    return SENSING.scale(load_sightings()[["distance", "orientation"]])
 
 
-def scale(distance: ArrayLike, orientation: ArrayLike) -> NDArray[np.float64]:
-    """Scale sightings for the ART network: 200..4100 mm and -0.5..0.5 rad become -1..1.
-
-    Parameters
-    ----------
-    distance : array_like, shape (n,)
-        Distance of the ball in mm.
-    orientation : array_like, shape (n,)
-        Orientation of the ball in rad, positive to the left.
-
-    Returns
-    -------
-    array, shape (n, 2)
-
-    References
-    ----------
-    Thesis, section 5.2.1.
-
-    Examples
-    --------
-    >>> scale([200, 2150, 4100], [-0.5, 0, 0.25])
-    array([[-1. , -1. ],
-           [ 0. ,  0. ],
-           [ 1. ,  0.5]])
-    """
-    distance, orientation = np.asarray(distance, float), np.asarray(orientation, float)
-    return np.stack([(distance - 2150) / 1950, orientation * 2], axis=-1)
-
-
-def unscale(patterns: ArrayLike) -> NDArray[np.float64]:
-    """Turn scaled patterns into points of the picture: the way back from `scale`, axes swapped.
+def in_view(patterns: ArrayLike) -> NDArray[np.float64]:
+    """Return where patterns lie in the picture: orientation across, distance up.
 
     Parameters
     ----------
@@ -104,15 +79,14 @@ def unscale(patterns: ArrayLike) -> NDArray[np.float64]:
     Returns
     -------
     array, shape (..., 2)
-        Orientation in rad (across), distance in mm (up).
+        Orientation in rad, distance in mm.
 
     Examples
     --------
-    >>> unscale([[-1, 0.5]])
+    >>> in_view([[-1, 0.5]])
     array([[  0.25, 200.  ]])
     """
-    patterns = np.asarray(patterns, float)
-    return np.stack([patterns[..., 1] / 2, patterns[..., 0] * 1950 + 2150], axis=-1)
+    return SENSING.unscale(patterns)[..., ::-1]
 
 
 def voronoi_cells(
@@ -220,7 +194,9 @@ def map_of(centers: ArrayLike) -> tuple[list[NDArray[np.float64]], list[int]]:
     [0, 1]
     """
     polygons, pairs = voronoi_cells(centers)
-    return [unscale(polygon) for polygon in polygons], six_colors(len(polygons), pairs)
+    ends = np.cumsum([len(polygon) for polygon in polygons])
+    corners = np.split(in_view(np.concatenate(polygons)), ends[:-1])
+    return corners, six_colors(len(polygons), pairs)
 
 
 def plot_centers(centers: ArrayLike, ax: Axes | None = None, *, title: str = "") -> CentersPlot:
@@ -252,7 +228,7 @@ def plot_centers(centers: ArrayLike, ax: Axes | None = None, *, title: str = "")
     (left, right), (near, far) = ORIENTATION, DISTANCE
     view = Rectangle((left, near), right - left, far - near, transform=ax.transData)
     area.set_clip_path(view)
-    across, up = unscale(centers).T
+    across, up = in_view(centers).T
     size = 2 * style.dot_radius(len(polygons))
     (dots,) = ax.plot(across, up, "o", color=style.INK, markersize=size, markeredgewidth=0)
     return CentersPlot(ax, area, dots, len(polygons))

@@ -10,15 +10,13 @@ const LAYERS = {
     const n = numbers[0];
     const sizes = numbers.subarray(1, 1 + n);
     const colors = numbers.subarray(1 + n, 1 + 2 * n);
-    const fills = layer.palette.map(() => new Path2D());
-    const borders = new Path2D();
+    const paths = layer.palette.map(() => new Path2D());
     let k = 1 + 2 * n;
     for (let i = 0; i < n; i++) {
-      const polygon = new Path2D();
-      for (let j = 0; j < sizes[i]; j++, k += 2) polygon.lineTo(...at(numbers[k], numbers[k + 1]));
-      polygon.closePath();
-      fills[colors[i]].addPath(polygon);
-      borders.addPath(polygon);
+      const path = paths[colors[i]];
+      path.moveTo(...at(numbers[k], numbers[k + 1]));
+      for (const end = k + 2 * sizes[i]; k < end; k += 2) path.lineTo(...at(numbers[k], numbers[k + 1]));
+      path.closePath();
     }
     const [left, right, bottom, top] = layer.within;
     const [x0, y0] = at(left, bottom);
@@ -26,13 +24,13 @@ const LAYERS = {
     ctx.beginPath();
     ctx.rect(x0, y0, x1 - x0, y1 - y0);
     ctx.clip();
-    fills.forEach((path, color) => {
+    paths.forEach((path, color) => {
       ctx.fillStyle = layer.palette[color];
       ctx.fill(path);
     });
     ctx.strokeStyle = "white";
     ctx.lineWidth = layer.border / 0.75;
-    ctx.stroke(borders);
+    for (const path of paths) ctx.stroke(path);
   },
 
   points(ctx, at, layer, numbers) {

@@ -102,7 +102,7 @@ def draw(
 
 def _map(found: np.ndarray) -> Panel:
     polygons, colors = segmentation.map_of(found)
-    across, up = segmentation.unscale(found).T
+    across, up = segmentation.in_view(found).T
     window = (*segmentation.ORIENTATION, *segmentation.DISTANCE)
     dots = Points(across, up, radius=style.dot_radius(len(found)) / 0.75)
     return Panel(

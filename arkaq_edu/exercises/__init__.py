@@ -1,0 +1,10 @@
+"""Checks of the students' answers: they say in what way an answer is wrong, and never give it.
+
+Each check takes the student's function, tries it on fresh random inputs, and returns a line to be
+pleased about; where the answer is not right it raises `ExerciseError` with a line that helps.
+"""
+
+from ._ask import ExerciseError
+from .segmentation import check_nearest, check_present, check_scale
+
+__all__ = ["ExerciseError", "check_nearest", "check_present", "check_scale"]
