@@ -62,7 +62,7 @@ endif
 
 $(READY): requirements.lock pyproject.toml
 	$(if $(PYTHON),,$(error $(NO_PYTHON)))
-	@echo 'Setting up $(VENV) with $(PYTHON): about 700 MB, once, a minute or more.'
+	@echo 'Setting up $(VENV) with $(PYTHON): about 1.2 GB, once, a minute or more.'
 	@$(BIN)/python -c '' 2>/dev/null || $(PYTHON) -m venv --clear $(VENV)
 	$(BIN)/python -m pip install --require-hashes --requirement requirements.lock
 	$(BIN)/python -m pip install --no-deps --no-build-isolation --editable .

@@ -66,7 +66,7 @@ def lab(folder: Path | None, copy_only: bool, no_browser: bool) -> None:
         folder = Path("arkaq-course")
     if folder is not None:
         copied, kept = copy_course(folder)
-        click.echo(f"{folder}: {len(copied)} files copied, {len(kept)} of yours kept.")
+        click.echo(f"{folder}: files copied: {len(copied)}, of yours kept: {len(kept)}")
         for name in kept:
             click.echo(f"  kept {name} (rename it and run this again to get the course's own)")
     if not copy_only:
