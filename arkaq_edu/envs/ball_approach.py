@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
@@ -93,7 +93,7 @@ class BallApproachEnv(gymnasium.Env[np.ndarray, int]):
     (5, 150.0, True)
     """
 
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 12}
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 12}
 
     def __init__(
         self,
@@ -113,7 +113,7 @@ class BallApproachEnv(gymnasium.Env[np.ndarray, int]):
         self.camera = camera or Camera()
         self.world = World(legs=legs)
         self.trail: list[tuple[float, float]] = []
-        self.action_space = spaces.Discrete(len(FOOTSTEPS))
+        self.action_space = spaces.Discrete(len(FOOTSTEPS))  # type: ignore[assignment]
         low = np.array([0.0, -_MOST_ORIENTATION, 0.0], dtype=np.float32)
         high = np.array([_MOST_DISTANCE, _MOST_ORIENTATION, 1.0], dtype=np.float32)
         self.observation_space = spaces.Box(low, high, dtype=np.float32)

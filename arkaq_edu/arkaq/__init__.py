@@ -1,0 +1,19 @@
+"""The ARKAQ agent: senses (Kalman filter), states (ART network), values (Q-learning).
+
+Thesis chapter 3, 5.2.1 and 5.2.2.
+"""
+
+from arkaq_edu.arkaq.agent import Arkaq
+from arkaq_edu.arkaq.automata import Q_LEARNING, SEGMENTATION, Automaton
+from arkaq_edu.arkaq.learning import Learning
+from arkaq_edu.arkaq.sensing import Estimator, Sensing
+
+__all__ = [
+    "Q_LEARNING",
+    "SEGMENTATION",
+    "Arkaq",
+    "Automaton",
+    "Estimator",
+    "Learning",
+    "Sensing",
+]

@@ -1,0 +1,485 @@
+"""The ARKAQ agent: a world model of a Kalman filter and an ART network, and a policy of Q."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import time
+import zipfile
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from tqdm.auto import tqdm
+
+from arkaq_edu import _checks
+from arkaq_edu.arkaq.automata import Q_LEARNING, SEGMENTATION
+from arkaq_edu.arkaq.learning import Learning
+from arkaq_edu.arkaq.sensing import Estimator, Sensing
+from arkaq_edu.art import EuclideanART
+from arkaq_edu.mdp import QLearner
+
+if TYPE_CHECKING:
+    import gymnasium
+
+FORMAT = 1
+_SEGMENTING, _LEARNING, _FINISHED = "segmentation", "Q-learning", "finished"
+_SECONDS_BETWEEN_FILES = 5.0
+
+
+class Arkaq:
+    """An agent that cuts the world into states as it meets them and learns what to do in each.
+
+    The way of the data: camera pixels -> sighting -> Kalman estimate -> scaled pattern -> ART
+    category -> row of Q -> action.
+
+    Parameters
+    ----------
+    vigilance : float
+        The ART network's vigilance, a distance between scaled patterns, in (0, 2].
+    sensing : {"consistent", "thesis"} or Sensing
+        The Kalman filter's settings and the intervals of the measurements.
+    learning : Learning, optional
+        All that the thesis leaves open: schedules, discount, numbers of patterns and cycles.
+    rng : int or numpy.random.Generator, optional
+        The seed of everything the agent draws and of every episode it starts.
+
+    Attributes
+    ----------
+    art : EuclideanART
+        The segmentation: `cluster_centers_`, shape (S, m).
+    q : QLearner or None
+        The values: `Q`, shape (S, A). None until Q-learning has begun.
+    history : list of tuple
+        One row an episode: phase, cycles, reward, whether the goal was reached.
+    cycles : int
+        Steps taken in the environment so far.
+
+    References
+    ----------
+    Thesis chapter 3 (figures 3.1 and 3.2), 5.2.1 and 5.2.2 (figures 5.6 and 5.15).
+    Sardag and Akin, ARKAQ-Learning, ISCIS 2005.
+
+    Examples
+    --------
+    >>> import gymnasium
+    >>> from arkaq_edu.arkaq import Learning
+    >>> env = gymnasium.make("arkaq_edu:BallApproach-v0", far=1000.0)
+    >>> short = Learning(patterns=300, exploration=2000, exploitation=0)
+    >>> agent = Arkaq(vigilance=0.2, learning=short, rng=0).learn(env, progress=False)
+    >>> observation, info = env.reset(seed=1)
+    >>> agent.reset()
+    >>> agent.act(observation) in (0, 1, 2)
+    True
+    """
+
+    def __init__(
+        self,
+        vigilance: float = 0.1,
+        *,
+        sensing: Sensing | Literal["consistent", "thesis"] = "consistent",
+        learning: Learning | None = None,
+        rng: int | np.random.Generator | None = None,
+    ) -> None:
+        self.vigilance = _checks.number("vigilance", vigilance, 0, 2, open_low=True)
+        if isinstance(sensing, str):
+            presets = {"consistent": Sensing.consistent, "thesis": Sensing.thesis}
+            if sensing not in presets:
+                raise ValueError(
+                    f"sensing must be 'consistent', 'thesis' or a Sensing, got {sensing!r}"
+                )
+            sensing = presets[sensing]()
+        self.sensing = sensing
+        self.learning = learning or Learning()
+        # A generator is asked once: episodes then have seeds of their own, so that a run that is
+        # taken up again draws what it would have drawn.
+        if rng is None or isinstance(rng, np.random.Generator):
+            rng = int(np.random.default_rng(rng).integers(2**63))
+        self.seed = _checks.integer("rng", rng)
+        self.art = EuclideanART(self.vigilance, self.learning.learning_rate)
+        self.q: QLearner | None = None
+        self.history: list[tuple[str, int, float, bool]] = []
+        self.cycles = 0
+        self._phase, self._done_in_phase = _SEGMENTING, 0
+        self._senses = Estimator(self.sensing)
+        self.reset()
+
+    # Acting -----------------------------------------------------------------------------------
+
+    def reset(self) -> None:
+        """Begin a new episode: forget where the ball was."""
+        self._senses.reset()
+        self._last_action: int | None = None
+
+    def act(self, observation: NDArray[np.floating]) -> int:
+        """Return the greedy action for what is seen now, after what was seen and done before.
+
+        Parameters
+        ----------
+        observation : ndarray, shape (m + 1,)
+            The environment's observation; its last entry is 1 with a sighting and 0 without.
+
+        Returns
+        -------
+        int
+            The action with the highest Q; of several, the first.
+
+        Raises
+        ------
+        ValueError
+            If the observation has the wrong shape or is not finite.
+        RuntimeError
+            If the agent has not learned yet.
+        """
+        if self.q is None:
+            raise RuntimeError("this agent has not learned yet: call learn first")
+        observation = _checks.array("observation", observation, (len(self.sensing.low) + 1,))
+        state = self.art.category(self._senses.observe(observation, self._last_action))
+        self._last_action = int(self.q.Q[state].argmax())
+        return self._last_action
+
+    # Learning ---------------------------------------------------------------------------------
+
+    def learn(
+        self,
+        env: gymnasium.Env,
+        checkpoint: str | os.PathLike[str] | None = None,
+        progress: bool = True,
+    ) -> Arkaq:
+        """Segment the world, then learn what to do in it.
+
+        Parameters
+        ----------
+        env : gymnasium.Env
+            The task; its observation's last entry tells whether there was a sighting.
+        checkpoint : path, optional
+            A file to keep the run in, written between episodes every few seconds and at the end.
+            If it exists, the run in it is taken up where it stopped, and comes to the same result
+            as if it had never been interrupted.
+        progress : bool
+            Whether to show progress bars.
+
+        Returns
+        -------
+        Arkaq
+            The agent itself.
+
+        Raises
+        ------
+        ValueError
+            If `checkpoint` holds another run: other settings or another seed.
+        """
+        if checkpoint is not None and Path(checkpoint).exists():
+            self._resume(Path(checkpoint))
+        keeper = _Keeper(self, checkpoint)
+        if self._phase == _SEGMENTING:
+            _Segmentation(self, env, keeper, progress).run()
+            self._phase, self._done_in_phase = _LEARNING, 0
+        if self._phase == _LEARNING:
+            if self.q is None:
+                n_actions = int(env.action_space.n)  # type: ignore[attr-defined]
+                self.q = self._new_q(n_actions)
+            _QLearning(self, env, keeper, progress).run()
+            self._phase = _FINISHED
+        keeper.keep()
+        return self
+
+    def _new_q(self, n_actions: int) -> QLearner:
+        law = self.learning
+        return QLearner(self.art.n_clusters_, n_actions, law.alpha, law.gamma, rng=self.seed)
+
+    # Keeping ----------------------------------------------------------------------------------
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the agent to an npz file: arrays and JSON, no pickles; whole or not at all.
+
+        Parameters
+        ----------
+        path : path
+            The file; it is replaced.
+        """
+        settings = {
+            "format": FORMAT,
+            "vigilance": self.vigilance,
+            "seed": self.seed,
+            "sensing": self.sensing.to_json(),
+            "learning": asdict(self.learning),
+            "phase": self._phase,
+            "done_in_phase": self._done_in_phase,
+            "cycles": self.cycles,
+        }
+        arrays: dict[str, Any] = {"settings": np.array(json.dumps(settings))}
+        if self.art.__sklearn_is_fitted__():
+            arrays |= {"centers": self.art.cluster_centers_, "counts": self.art.counts_}
+        if self.q is not None:
+            arrays |= {"Q": self.q.Q, "visits": self.q.visits}
+        arrays["history"] = np.array(
+            [(phase == _LEARNING, *rest) for phase, *rest in self.history], dtype=np.float64
+        ).reshape(-1, 4)
+        path = Path(path)
+        fresh = path.with_name(path.name + ".part")
+        with open(fresh, "wb") as file:
+            np.savez_compressed(file, **arrays)
+        os.replace(fresh, path)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Arkaq:
+        """Read an agent that `save` wrote; nothing in the file is run.
+
+        Parameters
+        ----------
+        path : path
+            The file.
+
+        Returns
+        -------
+        Arkaq
+
+        Raises
+        ------
+        ValueError
+            If the file is not one of ours, is damaged, or has a format this version cannot read.
+        """
+        try:
+            with np.load(path, allow_pickle=False) as file:
+                arrays = {name: file[name] for name in file.files}
+            settings = json.loads(str(arrays["settings"]))
+            if settings["format"] != FORMAT:
+                raise ValueError(f"format must be {FORMAT}, got {settings['format']!r}")
+            agent = cls(
+                settings["vigilance"],
+                sensing=Sensing.from_json(settings["sensing"]),
+                learning=Learning(**settings["learning"]),
+                rng=settings["seed"],
+            )
+            agent._take_up(settings, arrays)
+        except FileNotFoundError:
+            raise
+        except (OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile) as error:
+            raise ValueError(f"{path} is not an agent that can be read: {error}") from error
+        return agent
+
+    def _take_up(self, settings: dict[str, Any], arrays: dict[str, NDArray]) -> None:
+        self._phase, self._done_in_phase = settings["phase"], settings["done_in_phase"]
+        self.cycles = settings["cycles"]
+        if "centers" in arrays:
+            self.art = EuclideanART.from_centers(
+                arrays["centers"], arrays["counts"], self.vigilance, self.learning.learning_rate
+            )
+        if "Q" in arrays:
+            n_states, n_actions = arrays["Q"].shape
+            if n_states != self.art.n_clusters_:
+                raise ValueError(f"Q must have {self.art.n_clusters_} rows, got {n_states}")
+            self.q = self._new_q(n_actions)
+            self.q.Q[:], self.q.visits[:] = arrays["Q"], arrays["visits"]
+        self.history = [
+            (_LEARNING if late else _SEGMENTING, int(n), float(reward), bool(success))
+            for late, n, reward, success in arrays["history"].tolist()
+        ]
+
+    def _resume(self, path: Path) -> None:
+        kept = Arkaq.load(path)
+        for name in ("vigilance", "seed", "learning"):
+            if getattr(kept, name) != getattr(self, name):
+                raise ValueError(
+                    f"checkpoint {path} holds a run with another {name}: "
+                    f"{getattr(kept, name)!r}, not {getattr(self, name)!r}"
+                )
+        if kept.sensing.to_json() != self.sensing.to_json():
+            raise ValueError(f"checkpoint {path} holds a run with another sensing")
+        for name in ("art", "q", "history", "cycles", "_phase", "_done_in_phase"):
+            setattr(self, name, getattr(kept, name))
+
+
+class _Keeper:
+    """Writes the run to its file between episodes, so that an interruption costs seconds."""
+
+    def __init__(self, agent: Arkaq, path: str | os.PathLike[str] | None) -> None:
+        self.agent, self.path = agent, path
+        self._written = time.monotonic()
+
+    def keep_now_and_then(self) -> None:
+        if self.path is not None and time.monotonic() - self._written > _SECONDS_BETWEEN_FILES:
+            self.keep()
+
+    def keep(self) -> None:
+        if self.path is not None:
+            self.agent.save(self.path)
+            self._written = time.monotonic()
+
+
+class _Phase:
+    """What both phases share: episodes that begin at the supervisor, and the looks at the world.
+
+    Every episode has a random stream of its own, made of the agent's seed, the phase and the
+    episode's number. So nothing but the learned arrays must be kept to take up a run.
+    """
+
+    name: str
+    number: int
+    unit: str
+
+    def __init__(self, agent: Arkaq, env: gymnasium.Env, keeper: _Keeper, progress: bool) -> None:
+        self.agent, self.env, self.keeper = agent, env, keeper
+        self.law, self.senses = agent.learning, agent._senses
+        self.bar = tqdm(
+            total=self.total,
+            initial=min(agent._done_in_phase, self.total),
+            desc=self.name,
+            unit=self.unit,
+            disable=not progress,
+        )
+        self.episode = sum(row[0] == self.name for row in agent.history)
+        self.begun, self.in_episode = False, 0
+
+    @property
+    def total(self) -> int:
+        raise NotImplementedError
+
+    def supervisor(self) -> str:
+        """Close the episode that ended, keep the run, and reset the world."""
+        agent = self.agent
+        if self.begun:
+            agent.history.append((self.name, self.in_episode, self.reward, self.success))
+            agent.cycles += self.in_episode
+            self.episode += 1
+            self.bar.update(min(agent._done_in_phase, self.total) - self.bar.n)
+            self.begun, self.in_episode = False, 0
+            self.keeper.keep_now_and_then()
+        if agent._done_in_phase >= self.total:
+            self.bar.close()
+            return "enough"
+        self.rng = np.random.default_rng([agent.seed, self.number, self.episode])
+        self.observation, _ = self.env.reset(seed=int(self.rng.integers(2**31)))
+        self.senses.reset()
+        self.pattern = self.senses.observe(self.observation, None)
+        self.begun, self.reward, self.success = True, 0.0, False
+        return "reset"
+
+    def step(self, action: int) -> float:
+        """Take one cycle and look; return its reward."""
+        self.observation, reward, self.terminated, self.truncated, info = self.env.step(action)
+        self.pattern = self.senses.observe(self.observation, action)
+        self.in_episode += 1
+        self.reward += float(reward)
+        self.success = bool(info.get("is_success", False))
+        return float(reward)
+
+
+class _Segmentation(_Phase):
+    """Figure 5.6: random actions; every sighting is a pattern for the network."""
+
+    name, number, unit = _SEGMENTING, 0, " patterns"
+
+    @property
+    def total(self) -> int:
+        return self.law.patterns
+
+    def run(self) -> None:
+        SEGMENTATION.run(
+            {
+                "supervisor": self.supervisor,
+                "observe": self.observe,
+                "unknown": lambda: "ask for reset",
+                "network": self.network,
+                "act": self.act,
+            }
+        )
+
+    def observe(self) -> str:
+        return "ball seen" if self.observation[-1] else "no ball"
+
+    def network(self) -> str:
+        art = self.agent.art
+        known = art.n_clusters_ if art.__sklearn_is_fitted__() else 0
+        art.learn_one(self.pattern)
+        self.agent._done_in_phase += 1
+        return "category created" if art.n_clusters_ > known else "category updated"
+
+    def act(self) -> str:
+        self.step(int(self.rng.integers(self.env.action_space.n)))  # type: ignore[attr-defined]
+        over = self.terminated or self.truncated or self.in_episode >= self.law.period
+        enough = self.agent._done_in_phase >= self.total
+        return "period over" if over or enough else "moved"
+
+
+class _QLearning(_Phase):
+    """Figure 5.15: explore what was never tried, later exploit what is known."""
+
+    name, number, unit = _LEARNING, 1, " cycles"
+
+    @property
+    def total(self) -> int:
+        return self.law.exploration + self.law.exploitation
+
+    def run(self) -> None:
+        assert self.agent.q is not None
+        self.q, self.category = self.agent.q, self.agent.art.category
+        Q_LEARNING.run(
+            {
+                "supervisor": self.supervisor,
+                "identify": self.identify,
+                "explore": self.explore,
+                "exploit": self.exploit,
+                "act": self.act,
+                "evaluate": self.evaluate,
+            }
+        )
+
+    def supervisor(self) -> str:
+        event = super().supervisor()
+        if event == "reset":
+            self.q.rng = self.rng
+            self.state = self.category(self.pattern)
+        return event
+
+    def identify(self) -> str:
+        self.held, self.discounted = 0, 0.0
+        if self.agent._done_in_phase < self.law.exploration:
+            return "exploration"
+        return "exploitation"
+
+    def explore(self) -> str:
+        """Take an action never tried here; where there is none, any."""
+        untried = self.q.unvisited(self.state)
+        choices = untried if len(untried) else np.arange(self.q.Q.shape[1])
+        self.action = int(self.rng.choice(choices))
+        return "action chosen"
+
+    def exploit(self) -> str:
+        """Draw from the Boltzmann distribution at a temperature that falls."""
+        late = self.agent._done_in_phase - self.law.exploration
+        progress = min(1.0, late / max(1, self.law.exploitation))
+        self.action = self.q.boltzmann(self.state, self.law.temperature(progress))
+        return "action chosen"
+
+    def act(self) -> str:
+        reward = self.step(self.action)
+        self.discounted += self.law.gamma**self.held * reward
+        self.held += 1
+        self.agent._done_in_phase += 1
+        self.next_state = self.category(self.pattern)
+        if self.terminated or self.truncated:
+            return "episode over"
+        stays = self.next_state == self.state and self.held < self.law.hold
+        return "state remains" if stays else "state left"
+
+    def evaluate(self) -> str:
+        """Back up (eq 2.12); a ball lost for good ends things, a time limit does not."""
+        lost = self.truncated and not self.observation[-1]
+        if lost:
+            self.discounted += self.law.gamma ** (self.held - 1) * self.law.lost_reward
+        self.q.update(
+            self.state,
+            self.action,
+            self.discounted,
+            self.next_state,
+            self.terminated or lost,
+            self.held,
+        )
+        self.state = self.next_state
+        return "episode over" if self.terminated or self.truncated else "next"

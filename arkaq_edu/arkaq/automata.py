@@ -1,0 +1,77 @@
+"""The automata of the thesis: each a small table, which the agent runs and the figure draws."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+DONE = "done"
+
+
+@dataclass(frozen=True)
+class Automaton:
+    """States, and what leads from one to the next.
+
+    Parameters
+    ----------
+    start : str
+        Where it begins.
+    table : mapping of (state, event) to state
+        It ends in the state "done".
+
+    Examples
+    --------
+    >>> door = Automaton("shut", {("shut", "push"): "open", ("open", "leave"): "done"})
+    >>> door.states
+    ('shut', 'open')
+    >>> door.run({"shut": lambda: "push", "open": lambda: "leave"})
+    """
+
+    start: str
+    table: Mapping[tuple[str, str], str]
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """The states that have a way out, in the order of the table."""
+        return tuple(dict.fromkeys(state for state, _ in self.table))
+
+    def run(self, work: Mapping[str, Callable[[], str]]) -> None:
+        """Do each state's work, which returns an event, until the table leads to "done"."""
+        state = self.start
+        while state != DONE:
+            state = self.table[state, work[state]()]
+
+
+# Figure 5.6. The thesis draws no end; here the phase is over after a number of patterns.
+SEGMENTATION = Automaton(
+    "supervisor",
+    {
+        ("supervisor", "reset"): "observe",
+        ("supervisor", "enough"): DONE,
+        ("observe", "ball seen"): "network",
+        ("observe", "no ball"): "unknown",
+        ("unknown", "ask for reset"): "supervisor",
+        ("network", "category updated"): "act",
+        ("network", "category created"): "act",
+        ("act", "moved"): "observe",
+        ("act", "period over"): "supervisor",
+    },
+)
+
+# Figure 5.15, and with it figures 4.3 and 4.4: one loop explores first and exploits later.
+Q_LEARNING = Automaton(
+    "supervisor",
+    {
+        ("supervisor", "reset"): "identify",
+        ("supervisor", "enough"): DONE,
+        ("identify", "exploration"): "explore",
+        ("identify", "exploitation"): "exploit",
+        ("explore", "action chosen"): "act",
+        ("exploit", "action chosen"): "act",
+        ("act", "state remains"): "act",
+        ("act", "state left"): "evaluate",
+        ("act", "episode over"): "evaluate",
+        ("evaluate", "next"): "identify",
+        ("evaluate", "episode over"): "supervisor",
+    },
+)

@@ -1,0 +1,199 @@
+"""From a sighting to a pattern: the Kalman filter's settings, and the scaling of its estimate."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from arkaq_edu import _checks
+from arkaq_edu.kalman import KalmanFilter, constant_velocity
+
+
+@dataclass(frozen=True)
+class Sensing:
+    """What the agent assumes of its senses.
+
+    Parameters
+    ----------
+    low, high : sequence of float, length m
+        The interval of each measurement; it is scaled to [-1, 1] and clipped.
+    A, H, Q, R, P0 : array_like
+        The Kalman filter: n states, m measurements. `R` in the measurement's units squared.
+    B : array_like, shape (n, n_actions), optional
+        What each action does to the state, one column an action; the filter's control input is
+        then the action taken. Without it the filter is told nothing of the actions.
+    range_noise : float
+        A standard deviation of ``range_noise * z[0]**2`` is added to `R` for the first
+        measurement (1/mm): the error of a distance read from a blob's size.
+
+    Notes
+    -----
+    `thesis` holds the numbers of section 5.2. `consistent` holds numbers measured on the field,
+    with which the filter's innovations are as large as it believes them to be.
+    """
+
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    A: Any
+    H: Any
+    Q: Any
+    R: Any
+    P0: Any
+    B: Any = None
+    range_noise: float = 0.0
+
+    def __post_init__(self) -> None:
+        low = _checks.array("low", self.low, (None,))
+        high = _checks.array("high", self.high, low.shape)
+        if not (low < high).all():
+            raise ValueError(f"high must be above low, got {self.low!r} and {self.high!r}")
+        _checks.number("range_noise", self.range_noise, 0)
+        self.filter()
+
+    @classmethod
+    def thesis(cls) -> Sensing:
+        """Return the settings of section 5.2: constant velocity, no control input.
+
+        The thesis gives the diagonals of `R` and `Q` and no `P0`, `B` or time step. The step is
+        one cycle here, and `P0` the prior that knows nothing: the ball anywhere in the interval,
+        its velocity anything up to a footstep a cycle.
+        """
+        A, H = constant_velocity(1.0, 2)
+        return cls(
+            (200.0, -0.5),
+            (4100.0, 0.5),
+            A,
+            H,
+            Q=np.diag([0.001, 0.0001, 0.0001, 0.000001]),
+            R=np.diag([100.0, 0.05]),
+            P0=np.diag([1950.0**2, 0.5**2, 100.0**2, 0.1**2]),
+        )
+
+    @classmethod
+    def consistent(cls) -> Sensing:
+        """Return settings measured on the field: the robot knows its own footsteps.
+
+        The ball stands still and the robot walks, so there is no velocity to estimate. `B` holds
+        the mean effect of each action, `Q` the spread about it, `range_noise` the camera's error:
+        `arkaq_edu.experiments.calibrate` measures them, and a test compares.
+        """
+        return cls(
+            (200.0, -0.5),
+            (4100.0, 0.5),
+            A=np.eye(2),
+            H=np.eye(2),
+            Q=np.diag([4.5**2, 0.0235**2]),
+            R=np.diag([3.0**2, 0.001**2]),
+            P0=np.diag([1950.0**2, 0.5**2]),
+            B=[[-96.0, -96.0, -96.0], [0.0, -0.1, 0.1]],
+            range_noise=8.5e-6,
+        )
+
+    def filter(self) -> KalmanFilter:
+        """Return the Kalman filter with these settings, its prior in the middle of the interval."""
+        x0 = np.zeros(len(np.asarray(self.A)))
+        x0[: len(self.low)] = (np.asarray(self.low) + np.asarray(self.high)) / 2
+        return KalmanFilter(self.A, self.H, self.Q, self.R, self.B, x0, self.P0)
+
+    def noise(self, z: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return R for one sighting, shape (m, m)."""
+        R = np.array(self.R, dtype=np.float64)
+        R[0, 0] += (self.range_noise * z[0] ** 2) ** 2
+        return R
+
+    def scale(self, z: ArrayLike) -> NDArray[np.float64]:
+        """Return measurements as patterns in [-1, 1].
+
+        Parameters
+        ----------
+        z : array_like, shape (..., m)
+
+        Returns
+        -------
+        ndarray, shape (..., m)
+
+        References
+        ----------
+        Thesis 5.2.1: (distance - 2150) / 1950 and 2 * orientation.
+
+        Examples
+        --------
+        >>> Sensing.thesis().scale([4100.0, -0.25])
+        array([ 1. , -0.5])
+        """
+        low, high = np.asarray(self.low), np.asarray(self.high)
+        return np.clip((np.asarray(z) - (low + high) / 2) / ((high - low) / 2), -1.0, 1.0)
+
+    def unscale(self, patterns: ArrayLike) -> NDArray[np.float64]:
+        """Return patterns as measurements: the way back from `scale`, inside the interval."""
+        low, high = np.asarray(self.low), np.asarray(self.high)
+        return np.asarray(patterns) * (high - low) / 2 + (low + high) / 2
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the settings as plain lists and numbers."""
+        return {
+            name: value if value is None else np.asarray(value, dtype=float).tolist()
+            for name, value in vars(self).items()
+        }
+
+    @classmethod
+    def from_json(cls, settings: Mapping[str, Any]) -> Sensing:
+        """Return the settings that `to_json` wrote."""
+        kept = dict(settings)
+        return cls(tuple(kept.pop("low")), tuple(kept.pop("high")), **kept)
+
+
+@dataclass
+class Estimator:
+    """The senses at work: a running estimate of where the ball is.
+
+    Parameters
+    ----------
+    sensing : Sensing
+        The settings.
+
+    Examples
+    --------
+    >>> senses = Estimator(Sensing.consistent())
+    >>> senses.observe(np.array([2000.0, 0.1, 1.0]), None).round(3)
+    array([-0.077,  0.2  ])
+    >>> senses.observe(np.array([0.0, 0.0, 0.0]), 0).round(3)  # unseen: the footstep still counts
+    array([-0.126,  0.2  ])
+    """
+
+    sensing: Sensing
+    kalman: KalmanFilter = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.kalman = self.sensing.filter()
+        B = self.sensing.B
+        self._inputs = None if B is None else np.eye(np.asarray(B).shape[1])
+        self._m = len(self.sensing.low)
+        self._middle = self.sensing.unscale(np.zeros(self._m))
+        self._half = np.asarray(self.sensing.high) - self._middle
+
+    def reset(self) -> None:
+        """Forget: the supervisor has moved the ball."""
+        self.kalman.reset()
+
+    def observe(self, observation: NDArray[np.floating], action: int | None) -> NDArray[np.float64]:
+        """Take an observation in and return the pattern, shape (m,), each entry in [-1, 1].
+
+        Parameters
+        ----------
+        observation : ndarray, shape (m + 1,)
+            The measurements, then 1 with a sighting and 0 without.
+        action : int or None
+            What led here; None at the start of an episode, where nothing did.
+        """
+        if action is not None:
+            self.kalman.predict(None if self._inputs is None else self._inputs[action])
+        if observation[-1]:
+            z = observation[:-1].astype(np.float64)
+            self.kalman.update(z, self.sensing.noise(z) if self.sensing.range_noise else None)
+        scaled = (self.kalman.x[: self._m] - self._middle) / self._half
+        return np.minimum(np.maximum(scaled, -1.0), 1.0)
