@@ -34,6 +34,7 @@ from numpy.typing import ArrayLike, NDArray
 
 INK = "#222222"
 QUIET = "#6b6b6b"
+OURS = "#8a2f74"  # what we computed, where no action gives it a colour
 ACTIONS = {"forward": "#16324f", "left": "#c8501e", "right": "#5aaadf", "kick": "#f4d24a"}
 # From light to dark; found by a search for six soft colours that stay apart for every kind of
 # colour vision.
@@ -139,7 +140,7 @@ def band(
     std: ArrayLike,
     ax: Axes | None = None,
     *,
-    color: str = ACTIONS["forward"],
+    color: str = OURS,
     **style: Any,
 ) -> tuple[Line2D, FillBetweenPolyCollection]:
     """Draw a mean as a line in a band that reaches one standard deviation to each side.

@@ -114,16 +114,15 @@ def _map(found: np.ndarray) -> Panel:
 
 def _curve(counts: Mapping[float, int], vigilance: float, n: int) -> Panel:
     thesis = segmentation.THESIS_COUNTS
-    ours = style.ACTIONS["left"]
     layers: list[Layer] = [
         Line([vigilance, vigilance], [30, n], style.QUIET, 1.0, dashed=True),
-        Line(list(counts), list(counts.values()), ours),
+        Line(list(counts), list(counts.values()), style.OURS),
         Points(list(thesis), list(thesis.values()), 5.0, hollow=True),
-        Points([vigilance], [n], 5.0, ours),
+        Points([vigilance], [n], 5.0, style.OURS),
         Points([0.08], [3600], 5.0, hollow=True),
         Text(0.09, 3600, "the thesis"),
-        Line([0.074, 0.086], [2500, 2500], ours),
-        Text(0.09, 2500, "this stream", ours),
+        Line([0.074, 0.086], [2500, 2500], style.OURS),
+        Text(0.09, 2500, "this stream", style.OURS),
     ]
     return Panel(
         "vigilance (a distance)", "categories", (0.022, 0.22), (30, 5000), layers, log=True,
