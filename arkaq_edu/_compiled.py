@@ -13,7 +13,7 @@ from typing import Any
 try:
     import numba
 except ImportError:  # a browser's Python has none: the same loops then run, slowly
-    numba = None
+    numba = None  # type: ignore[assignment]
 
 HAVE_NUMBA = numba is not None
 

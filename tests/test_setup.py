@@ -319,7 +319,7 @@ def test_lab_opens_the_first_page(tmp_path):
 
 
 def _answer(address, server):
-    for _ in range(300):
+    for _ in range(1200):
         assert server.poll() is None, "JupyterLab stopped"
         try:
             return urllib.request.urlopen(address)
