@@ -239,15 +239,16 @@ def policy_iteration(mdp: MDP) -> tuple[NDArray[np.floating], NDArray[np.intp]]:
     """
     states = np.arange(mdp.n_states)
     policy = mdp.R.argmax(axis=1)
+    V = policy_evaluation(mdp, policy)
     while True:
-        V = policy_evaluation(mdp, policy)
         Q = mdp.action_values(V)
-        # Rounding must not pass for an improvement: two equal actions would take turns for ever.
-        rounding = 1e-14 * np.abs(V).max() / (1 - mdp.gamma)
+        rounding = 1e-14 * np.abs(V).max()
         better = Q.max(axis=1) > Q[states, policy] + rounding
-        if not better.any():
-            return V, _first_best(Q, rounding)
         policy = np.where(better, Q.argmax(axis=1), policy)
+        previous, V = V, policy_evaluation(mdp, policy)
+        # What is better by rounding alone earns no more: equal actions do not take turns for ever.
+        if not V.sum() > previous.sum():
+            return previous, _first_best(Q, rounding)
 
 
 def policy_model(mdp: MDP, policy: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

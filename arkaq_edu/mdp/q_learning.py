@@ -152,6 +152,7 @@ class QLearner:
         else:
             self._rate = value = number("alpha", value, 0, 1)
         self._alpha = value
+        self._known_rates = np.empty(0)
 
     @property
     def gamma(self) -> float:
@@ -270,10 +271,8 @@ class QLearner:
         if together[0].ndim != 1:
             raise ValueError(f"the columns must have shape (N,), got {together[0].shape}")
         s, a, *rest = (np.ascontiguousarray(c) for c in together)
-        visits = self.visits.copy()
-        np.add.at(visits, (s, a), 1)
         changes = np.empty(len(s))
-        rates = self._rates(int(visits.max()))
+        rates = self._rates(int(self.visits.max()) + len(s))
         bad = replay(self._pairs, s, a, *rest, rates, self._gamma, changes)
         if bad >= 0:
             raise ValueError(f"r must leave Q finite, got {rest[0][bad]} at ({bad},)")
@@ -462,10 +461,15 @@ class QLearner:
         return number(f"alpha({n})", self._alpha(n), 0, 1)  # type: ignore[operator]
 
     def _rates(self, n_visits: int) -> NDArray[np.float64]:
-        """Return the learning rates of visits 1, 2, ..., or one that holds for all."""
+        """Return the learning rates of visits 1, 2, ..., `n_visits`, or one that holds for all."""
         if self._rate is not None:
             return np.array([self._rate])
-        return np.array([self._schedule(n) for n in range(1, max(n_visits, 1) + 1)])
+        missing = range(len(self._known_rates) + 1, n_visits + 1)
+        rates = np.fromiter(map(self._alpha, missing), np.float64)  # type: ignore[arg-type]
+        for n in np.flatnonzero(~((rates >= 0) & (rates <= 1))):
+            self._schedule(missing[n])
+        self._known_rates = np.append(self._known_rates, rates)
+        return self._known_rates
 
     def _bad_row(self, s: Any) -> ValueError:
         """Say why no action of `s` could be drawn, off the fast path."""
