@@ -1,7 +1,10 @@
-"""The loops of the Kalman filter: the equations of thesis section 2.5, one line of maths a loop.
+"""The loops of the Kalman filter: the equations of thesis section 2.5.
 
-Every array is C-contiguous float64 and written in place, so each kernel has one signature and a
-step allocates nothing. `W` is scratch of shape (n + m, n + m).
+Handing an array from Python to a kernel costs some 60 ns, about as much as the work of a kernel on
+four states. So all matrices of a filter live in one array, its memory M, each in a plane of its
+own: ``M[P, i, j]`` is element (i, j) of P. n and m are the numbers of states and measurements, x
+is the state and y the innovation. Every array is C-contiguous float64 and written in place, so
+that each kernel compiles once.
 """
 
 from __future__ import annotations
@@ -12,205 +15,296 @@ import numpy as np
 
 from arkaq_edu._compiled import kernel
 
+# The matrices of the thesis, then scratch: V (n, n), G = H P (m, n) and L (m, m), a factor of S.
+A, Q, P, H, R, K, S, V, G, L = PLANES = range(10)
+
 LOG_2PI = math.log(2 * math.pi)
-# A pivot this small against its own variance is rounding: that row says nothing new.
-NEGLIGIBLE = 16 * np.finfo(np.float64).eps
+ROUNDING = float(np.finfo(np.float64).eps)
+# A variance that shrinks to this part of itself, once the rows before are known, is rounding.
+NEGLIGIBLE = 16 * ROUNDING
 
 
 @kernel
 def is_covariance(R):
     """Tell whether R is finite, exactly symmetric and has no negative pivot."""
     m = R.shape[0]
-    L = R.copy()
+    rest = R.copy()  # what is left of R as its columns are eliminated
     for j in range(m):
         for i in range(m):
             if not math.isfinite(R[i, j]) or R[i, j] != R[j, i]:
                 return False
-        if L[j, j] < 0.0:
+        if rest[j, j] < 0.0:
             return False
         for i in range(j + 1, m):
-            if L[j, j] == 0.0:
-                if L[i, j] != 0.0:
+            if rest[j, j] == 0.0:
+                if rest[i, j] != 0.0:
                     return False
                 continue
-            ratio = L[i, j] / L[j, j]
+            ratio = rest[i, j] / rest[j, j]
             for k in range(j + 1, i + 1):
-                L[i, k] -= ratio * L[k, j]
+                rest[i, k] -= ratio * rest[k, j]
     return True
 
 
 @kernel
-def factor(S, y, L):
-    """Factor S = L D L', with D on the diagonal of L; rows that say nothing get D = 0.
-
-    A row says nothing when it was not seen (y is NaN) or when the rows before it determine it.
-    """
-    for i in range(S.shape[0]):
-        pivot = 0.0 if math.isnan(y[i]) else S[i, i]
-        for j in range(i):
-            L[i, j] = 0.0
-            if pivot > 0.0 and L[j, j] > 0.0:
-                total = S[i, j]
-                for k in range(j):
-                    total -= L[i, k] * L[j, k]
-                L[i, j] = total  # l d, until the row is whole
-        for j in range(i):
-            if L[j, j] > 0.0:
-                scaled = L[i, j] / L[j, j]
-                pivot -= scaled * L[i, j]
-                L[i, j] = scaled
-        L[i, i] = pivot
-        if pivot <= NEGLIGIBLE * S[i, i]:
-            for j in range(i + 1):
-                L[i, j] = 0.0
+def predict_mean(M, push, x):
+    """Set x = A x + B u (eq 2.55), with push = B u."""
+    for i in range(x.size):
+        total = push[i]
+        for j in range(x.size):
+            total += M[A, i, j] * x[j]
+        M[V, 0, i] = total
+    for i in range(x.size):
+        x[i] = M[V, 0, i]
 
 
 @kernel
-def solve(L, b):
-    """Replace b by the solution of S x = b, given S = L D L'; rows with D = 0 get 0."""
-    m = b.size
-    for i in range(m):
-        for j in range(i):
-            b[i] -= L[i, j] * b[j]
-        if L[i, i] == 0.0:
-            b[i] = 0.0
-    for i in range(m - 1, -1, -1):
-        if L[i, i] > 0.0:
-            b[i] /= L[i, i]
-            for j in range(i + 1, m):
-                b[i] -= L[j, i] * b[j]
-
-
-@kernel
-def predict(A, Q, B, u, x, P, W):
-    """Time update, eq 2.55 and 2.56: x = A x + B u and P = A P A' + Q."""
-    n = x.size
-    for i in range(n):
-        total = 0.0
-        for j in range(n):
-            total += A[i, j] * x[j]
-        for j in range(u.size):
-            total += B[i, j] * u[j]
-        W[0, i] = total
-    for i in range(n):
-        x[i] = W[0, i]
-    for i in range(n):  # W = A P
+def predict_covariance(M, n):
+    """Set P = A P A' + Q (eq 2.56)."""
+    for i in range(n):  # V = A P
         for k in range(n):
-            W[i, k] = 0.0
+            M[V, i, k] = 0.0
         for j in range(n):
-            if A[i, j] != 0.0:  # a motion model is mostly zeros
+            a = M[A, i, j]
+            if a != 0.0:  # a motion model is mostly zeros
                 for k in range(n):
-                    W[i, k] += A[i, j] * P[j, k]
-    for i in range(n):  # P = W A' + Q, one triangle and its mirror
+                    M[V, i, k] += a * M[P, j, k]
+    for i in range(n):  # P = V A' + Q, one triangle and its mirror
         for k in range(i, n):
-            total = Q[i, k]
+            total = M[Q, i, k]
             for j in range(n):
-                total += W[i, j] * A[k, j]
-            P[i, k] = total
-            P[k, i] = total
+                total += M[V, i, j] * M[A, k, j]
+            M[P, i, k] = total
+            M[P, k, i] = total
 
 
 @kernel
-def update(H, R, gates, z, x, P, K, y, S, W):
-    """Measurement update, eq 2.57 to 2.59; return (NIS, log-likelihood, whether z was used).
+def predict(M, push, x):
+    """Time update, eq 2.55 and 2.56."""
+    predict_mean(M, push, x)
+    predict_covariance(M, x.size)
+
+
+@kernel
+def innovate(M, z, x, y):
+    """Set y = z - H x, NaN where z is missing; tell whether all of z was seen."""
+    whole = True
+    for i in range(z.size):
+        total = z[i]
+        for j in range(x.size):
+            total -= M[H, i, j] * x[j]
+        y[i] = total
+        whole = whole and not math.isnan(z[i])
+    return whole
+
+
+@kernel
+def factor(M, y):
+    """Factor S = L D L', with 1/D on the diagonal of L; return the rows used and log |2 pi S|.
+
+    A row is not used, and its 1/D is 0, when it was not seen (y is NaN) or when the rows before
+    determine it: then it says nothing new, and S may as well be singular.
+    """
+    used = 0
+    log_det = 0.0
+    for i in range(y.size):
+        rest = M[S, i, i]
+        for j in range(i):
+            total = M[S, i, j]
+            for k in range(j):
+                total -= M[L, i, k] * M[L, j, k]
+            M[L, i, j] = total  # still times D
+        for j in range(i):
+            total = M[L, i, j]
+            M[L, i, j] = total * M[L, j, j]
+            rest -= total * M[L, i, j]
+        if rest > NEGLIGIBLE * M[S, i, i] and not math.isnan(y[i]):
+            M[L, i, i] = 1.0 / rest
+            used += 1
+            log_det += LOG_2PI + math.log(rest)
+        else:
+            for j in range(i + 1):
+                M[L, i, j] = 0.0
+    return used, log_det
+
+
+@kernel
+def squared_norm(M, y):
+    """Return y' S^-1 y, with S in factors, as the sum of what each row used adds."""
+    total = 0.0
+    for i in range(y.size):
+        M[V, 0, i] = 0.0
+        if M[L, i, i] > 0.0:
+            rest = y[i]
+            for j in range(i):
+                rest -= M[L, i, j] * M[V, 0, j]
+            M[V, 0, i] = rest
+            total += rest * rest * M[L, i, i]
+    return total
+
+
+@kernel
+def gain(M, y, n):
+    """Set S = H P H' + R and K = P H' S^-1 (eq 2.57); return what `factor` does.
+
+    Rows not used leave a column of zeros in K.
+    """
+    m = y.size
+    for i in range(m):  # G = H P
+        for k in range(n):
+            M[G, i, k] = 0.0
+        for j in range(n):
+            h = M[H, i, j]
+            if h != 0.0:
+                for k in range(n):
+                    M[G, i, k] += h * M[P, j, k]
+    for i in range(m):  # S = H G' + R, one triangle and its mirror
+        for j in range(i + 1):
+            M[S, i, j] = M[R, i, j]
+        for k in range(n):
+            h = M[H, i, k]
+            if h != 0.0:
+                for j in range(i + 1):
+                    M[S, i, j] += h * M[G, j, k]
+        for j in range(i):
+            M[S, j, i] = M[S, i, j]
+    used, log_det = factor(M, y)
+    for r in range(n):  # K L D L' = G', row by row
+        for i in range(m):
+            total = M[G, i, r]
+            for j in range(i):
+                total -= M[L, i, j] * M[K, r, j]
+            M[K, r, i] = total
+        for i in range(m - 1, -1, -1):
+            total = M[K, r, i] * M[L, i, i]
+            for j in range(i + 1, m):
+                total -= M[L, j, i] * M[K, r, j]
+            M[K, r, i] = total
+    return used, log_det
+
+
+@kernel
+def correct_mean(M, y, x):
+    """Set x = x + K y (eq 2.58), leaving out what was not seen."""
+    for j in range(y.size):
+        if not math.isnan(y[j]):
+            for i in range(x.size):
+                x[i] += M[K, i, j] * y[j]
+
+
+@kernel
+def correct_covariance(M, n, m):
+    """Set P = (I - K H) P (I - K H)' + K R K', given G = H P.
+
+    Joseph's form: for this K it equals eq 2.59, and rounding leaves it positive. With
+    V = (I - K H) P = P - K G it is V - (V H' - K R) K'.
+    """
+    for i in range(n):
+        for j in range(n):
+            M[V, i, j] = M[P, i, j]
+    for k in range(m):
+        for i in range(n):
+            c = M[K, i, k]
+            for j in range(n):
+                M[V, i, j] -= c * M[G, k, j]
+    for k in range(m):  # G has served: from here on it is (V H' - K R)'
+        for i in range(n):
+            total = 0.0
+            for j in range(m):
+                total -= M[K, i, j] * M[R, j, k]
+            M[G, k, i] = total
+        for j in range(n):
+            h = M[H, k, j]
+            if h != 0.0:
+                for i in range(n):
+                    M[G, k, i] += M[V, i, j] * h
+    for i in range(n):
+        for j in range(i, n):
+            total = M[V, i, j]
+            for k in range(m):
+                total -= M[G, k, i] * M[K, j, k]
+            M[P, i, j] = total
+            M[P, j, i] = total
+
+
+@kernel
+def update(M, gates, z, x, y):
+    """Measurement update, eq 2.57 to 2.59; return (NIS, log-likelihood, accepted).
 
     The NIS is NaN where nothing was seen, and -1 where z holds an infinity (nothing is changed).
     """
     n, m = x.size, z.size
-    G, V, L = W[:n, n:], W[:n, :n], W[n:, n:]
     for i in range(m):
         if math.isinf(z[i]):
             return -1.0, 0.0, False
-    for i in range(m):  # y = z - H x and G = P H'
-        y[i] = z[i]
-        for k in range(n):
-            G[k, i] = 0.0
-        for j in range(n):
-            if H[i, j] != 0.0:
-                y[i] -= H[i, j] * x[j]
-                for k in range(n):
-                    G[k, i] += P[k, j] * H[i, j]
-    for i in range(m):  # S = H G + R
-        for j in range(i + 1):
-            total = R[i, j]
-            for k in range(n):
-                total += H[i, k] * G[k, j]
-            S[i, j] = total
-            S[j, i] = total
-    factor(S, y, L)
-
-    nis = 0.0  # y' S^-1 y, as the squares of the innovations that each row adds
-    seen = 0
-    log_det = 0.0
-    white = K[0]  # a row of the gain, lent for a moment
-    for i in range(m):
-        white[i] = 0.0
-        if L[i, i] > 0.0:
-            white[i] = y[i]
-            for j in range(i):
-                white[i] -= L[i, j] * white[j]
-            seen += 1
-            nis += white[i] * white[i] / L[i, i]
-            log_det += math.log(L[i, i])
-    used = seen > 0 and nis <= gates[seen]
-    if not used:
-        for i in range(n):
-            for j in range(m):
-                K[i, j] = 0.0
-        return (nis if seen > 0 else math.nan), 0.0, False
-
-    for i in range(n):  # K S = G, row by row, and x = x + K y
-        for j in range(m):
-            K[i, j] = 0.0 if L[j, j] == 0.0 else G[i, j]
-        solve(L, K[i])
-        for j in range(m):
-            if L[j, j] > 0.0:
-                x[i] += K[i, j] * y[j]
-
-    # P = (I - K H) P (I - K H)' + K R K' (Joseph) equals eq 2.59 for this K and stays positive
-    # under rounding. With V = (I - K H) P = P - K G' it is V - (V H' - K R) K'.
-    for i in range(n):
-        for j in range(n):
-            V[i, j] = P[i, j]
-            for k in range(m):
-                V[i, j] -= K[i, k] * G[j, k]
-    for i in range(n):  # G is free now: G = V H' - K R
-        for j in range(m):
-            total = 0.0
-            for k in range(n):
-                total += V[i, k] * H[j, k]
-            for k in range(m):
-                total -= K[i, k] * R[k, j]
-            G[i, j] = total
-    for i in range(n):
-        for j in range(i, n):
-            total = V[i, j]
-            for k in range(m):
-                total -= G[i, k] * K[j, k]
-            P[i, j] = total
-            P[j, i] = total
-    return nis, -0.5 * (seen * LOG_2PI + log_det + nis), True
+    innovate(M, z, x, y)
+    used, log_det = gain(M, y, n)
+    nis = squared_norm(M, y) if used > 0 else math.nan
+    if nis <= gates[used]:
+        correct_mean(M, y, x)
+        correct_covariance(M, n, m)
+        return nis, -0.5 * (log_det + nis), True
+    M[K] = 0.0
+    return nis, 0.0, False
 
 
 @kernel
-def track(A, H, Q, R, B, gates, x0, P0, Z, U, x, P, x_prior, P_prior, K, y, S, nis, used):
-    """Filter a whole track, keeping everything; return the log-likelihood of what was used.
+def settled(now, before):
+    """Tell whether a covariance moved by no more than a rounding of its standard deviations."""
+    for i in range(now.shape[0]):
+        for j in range(i + 1):
+            moved = (now[i, j] - before[i, j]) / ROUNDING
+            if moved * moved > now[i, i] * now[j, j]:
+                return False
+    return True
 
-    R is (T, m, m), or (1, m, m) where it never changes.
+
+@kernel
+def track(M, Rs, pushes, gates, x, Z, xs, Ps, x_priors, P_priors, ys, Ss, Ks, nis, accepted):
+    """Filter a whole track from x and P, keeping everything; return its log-likelihood.
+
+    `Rs` has a row for each of Z, or none if R never changes; `pushes` a row for each, or one.
+    Covariances do not depend on what is seen, only on whether it is: once P_prior has settled, it,
+    S, K and P stay as they are until something is missing or refused. That makes a long track
+    several times faster.
     """
-    n, m = x0.size, Z.shape[1]
-    W = np.empty((n + m, n + m))
-    x_now, P_now = x0.copy(), P0.copy()
-    log_likelihood = 0.0
+    n, m = x.size, Z.shape[1]
+    y = np.empty(m)
+    used, log_det, log_likelihood = 0, 0.0, 0.0
+    still, was_full = False, False
     for t in range(Z.shape[0]):
-        predict(A, Q, B, U[t], x_now, P_now, W)
-        x_prior[t] = x_now
-        P_prior[t] = P_now
-        R_now = R[t if R.shape[0] > 1 else 0]
-        nis[t], gained, used[t] = update(H, R_now, gates, Z[t], x_now, P_now, K[t], y[t], S[t], W)
-        x[t] = x_now
-        P[t] = P_now
-        log_likelihood += gained
+        predict_mean(M, pushes[min(t, pushes.shape[0] - 1)], x)
+        x_priors[t] = x
+        whole = innovate(M, Z[t], x, y)
+        still = still and whole
+        if still:
+            P_priors[t] = P_priors[t - 1]
+        else:
+            predict_covariance(M, n)
+            P_priors[t] = M[P, :n, :n]
+            if Rs.shape[0] > 0:
+                M[R, :m, :m] = Rs[t]
+            used, log_det = gain(M, y, n)
+        nis[t] = squared_norm(M, y) if used > 0 else math.nan
+        accepted[t] = nis[t] <= gates[used]
+        if accepted[t]:
+            correct_mean(M, y, x)
+            log_likelihood -= 0.5 * (log_det + nis[t])
+            if not still:
+                correct_covariance(M, n, m)
+        else:
+            M[P, :n, :n] = P_priors[t]
+            M[K] = 0.0
+        full = whole and accepted[t]
+        if full and was_full and not still and Rs.shape[0] == 0:
+            still = settled(P_priors[t], P_priors[t - 1])
+        still = still and full
+        was_full = full
+        xs[t] = x
+        Ps[t] = M[P, :n, :n]
+        Ks[t] = M[K, :n, :m]
+        ys[t] = y
+        Ss[t] = M[S, :m, :m]
     return log_likelihood
 
 
@@ -218,24 +312,52 @@ def track(A, H, Q, R, B, gates, x0, P0, Z, U, x, P, x_prior, P_prior, K, y, S, n
 def follow(A, H, x0, K, Z, members, x):
     """Filter the tracks Z[members] with gains K that are known already."""
     T, n, m = K.shape
-    prior = np.empty(n)
-    y = np.empty(m)
-    for track_number in members:
-        now = x0
+    prior, y = np.empty(n), np.empty(m)
+    for member in members:
         for t in range(T):
-            z, after = Z[track_number, t], x[track_number, t]
             for i in range(n):
-                prior[i] = 0.0
+                total = 0.0
                 for j in range(n):
-                    prior[i] += A[i, j] * now[j]
+                    total += A[i, j] * (x[member, t - 1, j] if t > 0 else x0[j])
+                prior[i] = total
             for i in range(m):
-                y[i] = 0.0
-                if not math.isnan(z[i]):
-                    y[i] = z[i]
-                    for j in range(n):
-                        y[i] -= H[i, j] * prior[j]
+                total = Z[member, t, i]
+                for j in range(n):
+                    total -= H[i, j] * prior[j]
+                y[i] = 0.0 if math.isnan(total) else total
             for i in range(n):
-                after[i] = prior[i]
+                total = prior[i]
                 for j in range(m):
-                    after[i] += K[t, i, j] * y[j]
-            now = after
+                    total += K[t, i, j] * y[j]
+                x[member, t, i] = total
+
+
+@kernel
+def smooth(M, xs, Ps, x_priors):
+    """Smooth a filtered track in place, from its last row back.
+
+    The next state is a sighting of A x with noise Q: so each row is updated by it, with A in the
+    plane of H and Q in that of R. What is unsure of the next state comes back through the gain.
+    """
+    n = xs.shape[1]
+    y = np.zeros(n)
+    for t in range(xs.shape[0] - 2, -1, -1):
+        M[P] = Ps[t]
+        gain(M, y, n)
+        correct_covariance(M, n, n)
+        y[:] = xs[t + 1] - x_priors[t + 1]
+        correct_mean(M, y, xs[t])
+        M[A] = M[K]
+        M[Q] = M[P]
+        M[P] = Ps[t + 1]
+        predict_covariance(M, n)  # P = K P_next K' + P
+        Ps[t] = M[P]
+
+
+@kernel
+def squared_norms(M, errors, Ps, norms):
+    """Set norms_t = e_t' P_t^-1 e_t."""
+    for t in range(errors.shape[0]):
+        M[S] = Ps[t]
+        factor(M, errors[t])
+        norms[t] = squared_norm(M, errors[t])

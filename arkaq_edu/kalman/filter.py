@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +12,17 @@ from arkaq_edu._checks import array, covariance, number
 from arkaq_edu.kalman import _kernels
 
 Array = NDArray[np.float64]
+
+# Which plane of the memory a matrix lives in, and its shape.
+_PLANES = {
+    "A": (_kernels.A, "nn"),
+    "Q": (_kernels.Q, "nn"),
+    "P": (_kernels.P, "nn"),
+    "H": (_kernels.H, "mn"),
+    "R": (_kernels.R, "mm"),
+    "K": (_kernels.K, "nm"),
+    "S": (_kernels.S, "mm"),
+}
 
 
 @dataclass(frozen=True)
@@ -54,20 +64,20 @@ class KalmanTrace:
 def _snapshot(
     name: str, doc: str, check: Callable[[KalmanFilter, ArrayLike], Array] | None = None
 ) -> property:
-    """Return a property that reads `name` as a read-only copy and, given `check`, assigns it.
+    """Return a property that reads a read-only copy of `name` and, given `check`, assigns it.
 
     Read-only, so that an edit in place, which would change only the copy, is not lost in silence.
     """
 
     def read(self: KalmanFilter) -> Array:
-        copy: Array = getattr(self, name).copy()
+        copy = self._own(name).copy()
         copy.setflags(write=False)
         return copy
 
     def assign(self: KalmanFilter, value: ArrayLike) -> None:
         if check is None:
-            raise AttributeError(f"{name[1:]} is fixed; make a new KalmanFilter to change it")
-        setattr(self, name, check(self, value))
+            raise AttributeError(f"{name} is fixed; make a new KalmanFilter to change it")
+        self._own(name)[:] = check(self, value)
 
     return property(read, assign, doc=doc)
 
@@ -183,56 +193,55 @@ class KalmanFilter:
     ) -> None:
         n = len(array("A", A, (None, None)))
         m = len(array("H", H, (None, n)))
-        self._A = np.array(array("A", A, (n, n)), order="C")
-        self._H = np.array(H, np.float64, order="C")
-        self._Q = np.array(covariance("Q", Q, n), order="C")
-        self._R = np.array(covariance("R", R, m), order="C")
-        self._B = np.zeros((n, 0)) if B is None else np.array(array("B", B, (n, None)), order="C")
+        self._memory = np.zeros((len(_kernels.PLANES), max(n, m), max(n, m)))
+        self._x, self._innovation, self._no_push = np.zeros(n), np.zeros(m), np.zeros(n)
+        self._z_shape = (m,)
+        self._own("A")[:] = array("A", A, (n, n))
+        self._own("H")[:] = array("H", H, (m, n))
+        self._own("Q")[:] = covariance("Q", Q, n)
+        self._own("R")[:] = covariance("R", R, m)
+        self._B = np.zeros((n, 0)) if B is None else np.array(array("B", B, (n, None)))
         self._x0 = np.zeros(n) if x0 is None else np.array(array("x0", x0, (n,)))
         self._P0 = self._wide() if P0 is None else np.array(covariance("P0", P0, n), order="C")
-        self._no_input = np.zeros(self._B.shape[1])
-        self._W = np.empty((n + m, n + m))
         self._gates = np.full(m + 1, np.inf)
+        self.gate = gate
         if gate is not None:
-            gate = number("gate", gate, 0, 1, open_low=True, open_high=True)
             from scipy.special import chdtri
 
-            self._gates[1:] = chdtri(np.arange(1, m + 1), 1 - gate)
-        self.gate = gate
+            missed = 1 - number("gate", gate, 0, 1, open_low=True, open_high=True)
+            self._gates[1:] = chdtri(np.arange(1, m + 1), missed)
         self.reset()
 
-    x = _snapshot(
-        "_x", "The estimate.", lambda self, value: np.array(array("x", value, self._x0.shape))
-    )
+    x = _snapshot("x", "The estimate.", lambda self, value: array("x", value, self._x.shape))
     P = _snapshot(
-        "_P",
+        "P",
         "The covariance of the estimate.",
-        lambda self, value: np.array(covariance("P", value, self._x0.size), order="C"),
+        lambda self, value: covariance("P", value, self._x.size),
     )
     R = _snapshot(
-        "_R", "The covariance of the measurement noise.", lambda self, value: self._noise(value)
+        "R", "The covariance of the measurement noise.", lambda self, value: self._noise(value)
     )
-    A = _snapshot("_A", "The state transition model.")
-    H = _snapshot("_H", "The observation model.")
-    Q = _snapshot("_Q", "The covariance of the process noise.")
-    B = _snapshot("_B", "The control-input model; without one it has no columns.")
-    x0 = _snapshot("_x0", "The estimate before the first step.")
-    P0 = _snapshot("_P0", "The covariance of `x0`.")
-    K = _snapshot("_K", "The gain of the last update.")
-    S = _snapshot("_S", "The covariance of the last innovation.")
-    innovation = _snapshot("_innovation", "The last z - H x.")
+    A = _snapshot("A", "The state transition model.")
+    H = _snapshot("H", "The observation model.")
+    Q = _snapshot("Q", "The covariance of the process noise.")
+    B = _snapshot("B", "The control-input model; without one it has no columns.")
+    x0 = _snapshot("x0", "The estimate before the first step.")
+    P0 = _snapshot("P0", "The covariance of `x0`.")
+    K = _snapshot("K", "The gain of the last update.")
+    S = _snapshot("S", "The covariance of the last innovation.")
+    innovation = _snapshot("innovation", "The last z - H x.")
 
     def __repr__(self) -> str:
-        n, k = self._B.shape
-        return f"KalmanFilter({n} states, {len(self._H)} measurements, {k} inputs)"
+        sizes = f"{self._x.size} states, {self._innovation.size} measurements"
+        return f"KalmanFilter({sizes}, {self._B.shape[1]} inputs)"
 
     def reset(self) -> None:
         """Forget everything seen: x and P go back to `x0` and `P0`."""
-        m, n = self._H.shape
-        self._x, self._P = self._x0.copy(), self._P0.copy()
-        self._K = np.zeros((n, m))
-        self._innovation = np.full(m, np.nan)
-        self._S = np.full((m, m), np.nan)
+        self._x[:] = self._x0
+        self._own("P")[:] = self._P0
+        self._own("K")[:] = 0
+        self._own("S")[:] = np.nan
+        self._innovation[:] = np.nan
         self.nis, self.log_likelihood, self.accepted = np.nan, 0.0, False
 
     def predict(self, u: ArrayLike | None = None) -> Array:
@@ -259,12 +268,8 @@ class KalmanFilter:
         >>> kf.predict([1.5])
         array([1350.])
         """
-        if u is None:
-            step = self._no_input
-        else:
-            self._check_has_input("u")
-            step = np.array(array("u", u, self._no_input.shape))
-        _kernels.predict(self._A, self._Q, self._B, step, self._x, self._P, self._W)
+        push = self._no_push if u is None else self._pushes("u", u, ())
+        _kernels.predict(self._memory, push, self._x)
         return self._x.copy()
 
     def update(self, z: ArrayLike, R: ArrayLike | None = None) -> Array:
@@ -295,19 +300,25 @@ class KalmanFilter:
         >>> kf.update([float("nan")])
         array([1.])
         """
-        noise = self._R if R is None else self._noise(R)
+        if R is not None:
+            usual, self.R = self.R, R
+            try:
+                return self.update(z)
+            finally:
+                self._own("R")[:] = usual
         try:
-            sighting = np.array(z, np.float64)
+            sighting = np.asarray(z, np.float64)
+            if not sighting.flags.carray:  # a kernel compiles anew for each kind of array
+                sighting = sighting.copy()
         except (TypeError, ValueError):
             sighting = np.empty(0)
         nis = -1.0
-        if sighting.shape == self._innovation.shape:
+        if sighting.shape == self._z_shape:
             nis, self.log_likelihood, self.accepted = _kernels.update(
-                self._H, noise, self._gates, sighting,
-                self._x, self._P, self._K, self._innovation, self._S, self._W,
-            )  # fmt: skip
+                self._memory, self._gates, sighting, self._x, self._innovation
+            )
         if nis == -1.0:
-            array("z", z, self._innovation.shape, allow_nan=True)
+            array("z", z, self._z_shape, allow_nan=True)
         self.nis = nis
         return self._x.copy()
 
@@ -346,43 +357,52 @@ class KalmanFilter:
         >>> trace.P[:, 0, 0]
         array([0.5 , 0.5 , 0.33333333])
         """
-        m, n = self._H.shape
+        n, m = self._x.size, self._innovation.size
         Z = np.array(array("Z", Z, (None, m), allow_nan=True), order="C")
         T = len(Z)
-        if U is None:
-            U = np.zeros((T, self._no_input.size))
-        else:
-            self._check_has_input("U")
-            U = np.array(array("U", U, (T, self._no_input.size)), order="C")
-        noise = self._R[np.newaxis]
+        pushes = self._no_push[np.newaxis] if U is None else self._pushes("U", U, (T,))
+        noise = np.empty((0, m, m))
         if R is not None:
             noise = np.array(array("R", R, (T, m, m)), order="C")
             for t in range(T):
                 noise[t] = self._noise(noise[t])
-        shapes: dict[str, Any] = {
-            "x": n, "P": (n, n), "x_prior": n, "P_prior": (n, n),
-            "K": (n, m), "innovation": m, "S": (m, m), "nis": (),
+        shapes: dict[str, tuple[int, ...]] = {
+            "x": (n,), "P": (n, n), "x_prior": (n,), "P_prior": (n, n),
+            "innovation": (m,), "S": (m, m), "K": (n, m), "nis": (),
         }  # fmt: skip
-        rows = {name: np.empty((T, *np.atleast_1d(shape))) for name, shape in shapes.items()}
+        rows = {name: np.empty((T, *shape)) for name, shape in shapes.items()}
         accepted = np.empty(T, np.bool_)
+        memory = self._memory.copy()
+        memory[_kernels.P, :n, :n] = self._P0
         log_likelihood = _kernels.track(
-            self._A, self._H, self._Q, noise, self._B, self._gates, self._x0, self._P0, Z, U,
-            *rows.values(), accepted,
-        )  # fmt: skip
+            memory, noise, pushes, self._gates, self._x0.copy(), Z, *rows.values(), accepted
+        )
         return KalmanTrace(**rows, accepted=accepted, log_likelihood=log_likelihood)
+
+    def _own(self, name: str) -> Array:
+        """Return the filter's own array of that name, to read or to fill."""
+        if name not in _PLANES:
+            vector: Array = getattr(self, "_" + name)
+            return vector
+        plane, shape = _PLANES[name]
+        rows, columns = (self._x.size if axis == "n" else self._innovation.size for axis in shape)
+        return self._memory[plane, :rows, :columns]
 
     def _wide(self) -> Array:
         """Return the P0 beside which one sighting is a million times surer."""
-        reach = (self._H**2).sum(axis=1)
-        variances = np.diag(self._R)[reach > 0] / reach[reach > 0]
+        reach = (self._own("H") ** 2).sum(axis=1)
+        variances = np.diag(self._own("R"))[reach > 0] / reach[reach > 0]
         widest = float(variances.max(initial=0.0))
-        return 1e6 * (widest or 1.0) * np.eye(self._x0.size)
+        return 1e6 * (widest or 1.0) * np.eye(self._x.size)
 
     def _noise(self, R: ArrayLike) -> Array:
         """Return R as a covariance of its own, by a quick look where that is enough."""
-        own = np.array(array("R", R, self._R.shape), order="C")
-        return own if _kernels.is_covariance(own) else covariance("R", own, len(own))
+        m = self._innovation.size
+        own = np.array(array("R", R, (m, m)), order="C")
+        return own if _kernels.is_covariance(own) else covariance("R", own, m)
 
-    def _check_has_input(self, name: str) -> None:
-        if self._no_input.size == 0:
-            raise ValueError(f"{name} must be None for a filter without B")
+    def _pushes(self, name: str, u: ArrayLike, rows: tuple[int, ...]) -> Array:
+        """Return B u for each row of u."""
+        if self._B.shape[1] == 0:
+            raise ValueError(f"{name} must be None for a filter without B, got {u!r}")
+        return np.ascontiguousarray(array(name, u, (*rows, self._B.shape[1])) @ self._B.T)
