@@ -1,7 +1,8 @@
 """The loops of Q-learning: compiled where numba is, and plain Python, to the same bits, elsewhere.
 
 `pairs` is the table of a `QLearner`: an array of shape (S, A) with the fields ``Q`` and ``visits``.
-A draw is made from `u`, a number from [0, 1).
+A draw is made from `u`, a number from [0, 1). Where a kernel turns an entry into a float, it is for
+the plain run: NumPy's scalars warn of an overflow, and compiled code has no such thing.
 """
 
 import math
@@ -36,16 +37,16 @@ def backup(pairs, s, a, r, s_next, terminated, n_steps, alpha, gamma):
     n_states, n_actions = Q.shape
     if not (0 <= s < n_states and 0 <= a < n_actions and 0 <= s_next < n_states and n_steps > 0):
         return math.nan
-    target = r
+    target = float(r)
     if not terminated:
-        best = Q[s_next, 0]
+        best = float(Q[s_next, 0])
         for b in range(1, n_actions):
-            best = max(best, Q[s_next, b])
+            best = max(best, float(Q[s_next, b]))
         target += power(gamma, n_steps) * best
     n = pairs["visits"][s, a] + 1
     if alpha == ONE_OVER_VISITS:
         alpha = 1 / n
-    old = Q[s, a]
+    old = float(Q[s, a])
     # Not old + alpha (target - old): so alpha = 1 takes the target over to the last bit.
     new = (1 - alpha) * old + alpha * target
     if not math.isfinite(new):
@@ -71,7 +72,7 @@ def replay(pairs, s, a, r, s_next, terminated, n_steps, alphas, gamma, changes):
 @kernel
 def weight(q, top, temperature):
     """exp((q - top) / T); halved on the way, so that no difference of two floats overflows."""
-    return math.exp(2 * ((q / 2 - top / 2) / temperature))
+    return math.exp(2 * ((float(q) / 2 - float(top) / 2) / float(temperature)))
 
 
 @kernel
