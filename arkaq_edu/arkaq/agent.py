@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 import time
 import zipfile
-from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -63,6 +61,8 @@ class Arkaq:
     ----------
     Thesis chapter 3 (figures 3.1 and 3.2), 5.2.1 and 5.2.2 (figures 5.6 and 5.15).
     Sardag and Akin, ARKAQ-Learning, ISCIS 2005.
+    Lin, Self-improving reactive agents based on reinforcement learning, planning and teaching,
+    Machine Learning 8, 1992 (backing an episode up from its end).
 
     Examples
     --------
@@ -334,7 +334,7 @@ class _Phase:
             disable=not progress,
         )
         self.episode = sum(row[0] == self.name for row in agent.history)
-        self.begun, self.in_episode = False, 0
+        self.begun, self.in_episode, self.reward, self.success = False, 0, 0.0, False
 
     @property
     def total(self) -> int:
@@ -419,6 +419,7 @@ class _QLearning(_Phase):
     def run(self) -> None:
         assert self.agent.q is not None
         self.q, self.category = self.agent.q, self.agent.art.category
+        self.experiences: list[tuple[int, int, float, int, bool, int]] = []
         Q_LEARNING.run(
             {
                 "supervisor": self.supervisor,
@@ -433,7 +434,7 @@ class _QLearning(_Phase):
     def supervisor(self) -> str:
         event = super().supervisor()
         if event == "reset":
-            self.q.rng = self.rng
+            self.q.rng, self.experiences = self.rng, []
             self.state = self.category(self.pattern)
         return event
 
@@ -469,17 +470,23 @@ class _QLearning(_Phase):
         return "state remains" if stays else "state left"
 
     def evaluate(self) -> str:
-        """Back up (eq 2.12); a ball lost for good ends things, a time limit does not."""
+        """Note the experience; once the episode is over, back all of it up (eq 2.12).
+
+        The last experience comes first (Lin 1992): so what the end was worth reaches the start in
+        one episode, where backups on the way would carry it back by one state an episode. A ball
+        lost for good ends an episode; a time limit only cuts it short.
+        """
+        over = self.terminated or self.truncated
         lost = self.truncated and not self.observation[-1]
         if lost:
             self.discounted += self.law.gamma ** (self.held - 1) * self.law.lost_reward
-        self.q.update(
-            self.state,
-            self.action,
-            self.discounted,
-            self.next_state,
-            self.terminated or lost,
-            self.held,
+        ended = self.terminated or lost
+        self.experiences.append(
+            (self.state, self.action, self.discounted, self.next_state, ended, self.held)
         )
         self.state = self.next_state
-        return "episode over" if self.terminated or self.truncated else "next"
+        if not over:
+            return "next"
+        for experience in reversed(self.experiences):
+            self.q.update(*experience)
+        return "episode over"

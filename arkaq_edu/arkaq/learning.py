@@ -53,7 +53,7 @@ class Learning:
     hold: int = 10
     gamma: float = 0.97
     alpha_power: float = 0.6
-    alpha_least: float = 0.05
+    alpha_least: float = 0.02
     hot: float = 10.0
     cold: float = 0.5
     lost_reward: float = 0.0
