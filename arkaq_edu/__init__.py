@@ -26,7 +26,7 @@ __getattr__, __dir__, __all__ = _lazy.attach(
     ],
     submod_attrs={
         "arkaq": ["Arkaq"],
-        "art": ["EuclideanART"],
+        "art": ["ART1", "ART2", "ART2A", "EuclideanART"],
         "kalman": ["KalmanFilter", "constant_velocity", "kalman_batch"],
         "mdp": ["MDP", "QLearner", "value_iteration"],
     },

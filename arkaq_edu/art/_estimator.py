@@ -121,10 +121,7 @@ class Categories(ClusterMixin, BaseEstimator):
             For an `X` of the wrong shape, not finite, or not of the kind the network takes.
         """
         check_is_fitted(self)
-        patterns = self._patterns(X, reset=False)
-        labels = np.empty(len(patterns), np.int64)
-        self._recall_rows(patterns, labels)
-        return labels
+        return self._recall(self._patterns(X, reset=False))
 
     def category(self, x: ArrayLike) -> int:
         """Return the category of one pattern of shape (n_features,), in microseconds.
@@ -133,9 +130,7 @@ class Categories(ClusterMixin, BaseEstimator):
         """
         if not self.__sklearn_is_fitted__():  # check_is_fitted itself takes ten times as long
             check_is_fitted(self)
-        label = np.empty(1, np.int64)
-        self._recall_rows(self._pattern(x), label)
-        return int(label[0])
+        return int(self._recall(self._pattern(x))[0])
 
     @property
     def cluster_centers_(self) -> Floats:
@@ -186,13 +181,24 @@ class Categories(ClusterMixin, BaseEstimator):
         self.labels_ = labels
         return self
 
-    def _present(self, X: Floats, labels: Labels) -> None:
-        """Learn the rows of `X`, writing the category of each into `labels`."""
+    def _heed(self) -> None:
+        """Follow `set_params`, if it was called since the last pattern."""
         wishes = self._wishes()
-        if wishes != self._given:  # set_params since the last pattern
+        if wishes != self._given:
             self._settings = self._parameters()
             self._given = wishes
             self._arrange(len(self._counts))
+
+    def _recall(self, X: Floats) -> Labels:
+        """Return the category of each row of `X`, learning nothing."""
+        self._heed()
+        labels = np.empty(len(X), np.int64)
+        self._recall_rows(X, labels)
+        return labels
+
+    def _present(self, X: Floats, labels: Labels) -> None:
+        """Learn the rows of `X`, writing the category of each into `labels`."""
+        self._heed()
         done = 0
         while True:
             done, self._n = self._learn_rows(X, done, labels)

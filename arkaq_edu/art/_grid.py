@@ -14,27 +14,17 @@ the centre after `c` in its bucket, -1 the end. Cells that share a bucket cost t
 """
 
 import math
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
-from .._compiled import HAVE_NUMBA, kernel
+from .._compiled import kernel
+from ._inlined import inlined
 
 ANY_DISTANCE = 1 << 30  # a reach that no search uses up
 # Half a cell is a hair more than a vigilance, so that rounding a place (by less than 2**-22 half
 # cells) cannot put a centre less than a vigilance away outside the box around a pattern.
 _A_HAIR_LESS = 1.0 - 2.0**-20
 _FARTHEST = 2.0**28
-
-
-def inlined(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return `function` such that kernels take its body over: in an inner loop, calls are dear."""
-    if not HAVE_NUMBA:
-        return function
-    from numba import njit
-
-    return njit(inline="always")(function)
 
 
 def half_cells_per_unit(vigilance: float) -> float:
