@@ -80,7 +80,6 @@ def _start_jupyterlab(folder: Path, no_browser: bool) -> None:
         f"--ServerApp.root_dir={folder.resolve()}",
         f"--LabApp.default_url=/lab/tree/{FIRST_PAGE}",
         "--allow-root",  # in a container there is often no other user
-        "--LabApp.news_url=None",  # a student's first sight is the course, not a question
     ]
     if no_browser:
         options.append("--no-browser")
