@@ -216,6 +216,7 @@ def test_the_wheel_carries_the_course_and_gives_a_student_a_copy(wheel, tmp_path
         assert [p.read_bytes() for p in mine] == [p.read_bytes() for p in theirs]
     assert (copy / "notebooks" / _paths.FIRST_PAGE).exists()
     assert not list(copy.rglob("*.py"))
+    assert list(wheel.glob("*.data/data/share/jupyter/lab/settings/overrides.d/arkaq_edu.json"))
 
 
 # The command
