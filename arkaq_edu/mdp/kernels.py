@@ -19,36 +19,24 @@ ONE_OVER_VISITS = -1.0
 
 
 @kernel
-def power(x, n):
-    """Return x**n by squaring: the same bits compiled or not, which ``**`` does not promise."""
-    power = 1.0
-    while n > 0:
-        if n & 1:
-            power *= x
-        x *= x
-        n >>= 1
-    return power
+def backup(pairs, s, a, r, s_next, discount, alpha):
+    """Equation 2.12 for one experience; the change of Q(s, a), or NaN where it is refused.
 
-
-@kernel
-def backup(pairs, s, a, r, s_next, terminated, n_steps, alpha, gamma):
-    """Equation 2.12 for one experience; the change of Q(s, a), or NaN where it is refused."""
+    `discount` is gamma to the number of steps, or 0 where the episode ended.
+    """
     Q = pairs["Q"]
     n_states, n_actions = Q.shape
-    if not (0 <= s < n_states and 0 <= a < n_actions and 0 <= s_next < n_states and n_steps > 0):
+    if not (0 <= s < n_states and 0 <= a < n_actions and 0 <= s_next < n_states):
         return math.nan
-    target = float(r)
-    if not terminated:
-        best = float(Q[s_next, 0])
-        for b in range(1, n_actions):
-            best = max(best, float(Q[s_next, b]))
-        target += power(gamma, n_steps) * best
+    best = float(Q[s_next, 0])
+    for b in range(1, n_actions):
+        best = max(best, float(Q[s_next, b]))
     n = pairs["visits"][s, a] + 1
     if alpha == ONE_OVER_VISITS:
         alpha = 1 / n
     old = float(Q[s, a])
     # Not old + alpha (target - old): so alpha = 1 takes the target over to the last bit.
-    new = (1 - alpha) * old + alpha * target
+    new = (1 - alpha) * old + alpha * (r + discount * best)
     if not math.isfinite(new):
         return math.nan
     Q[s, a] = new
@@ -60,10 +48,9 @@ def backup(pairs, s, a, r, s_next, terminated, n_steps, alpha, gamma):
 def replay(pairs, s, a, r, s_next, terminated, n_steps, alphas, gamma, changes):
     """`backup` over arrays; alphas[n - 1] is for the n-th visit, its last entry for all later."""
     for t in range(len(s)):
-        n = min(pairs["visits"][s[t], a[t]], len(alphas) - 1)
-        changes[t] = backup(
-            pairs, s[t], a[t], r[t], s_next[t], terminated[t], n_steps[t], alphas[n], gamma
-        )
+        alpha = alphas[min(pairs["visits"][s[t], a[t]], len(alphas) - 1)]
+        discount = 0.0 if terminated[t] else gamma ** float(n_steps[t])
+        changes[t] = backup(pairs, s[t], a[t], float(r[t]), s_next[t], discount, alpha)
         if math.isnan(changes[t]):
             return t
     return -1
@@ -134,7 +121,8 @@ def walk_and_learn(
             return -1
         s_next = np.searchsorted(cumulative[a, s], u[t, 2], side="right")
         alpha = alphas[min(pairs["visits"][s, a], len(alphas) - 1)]
-        changes[t] = backup(pairs, s, a, R[s, a], s_next, ends[s_next], 1, alpha, gamma)
+        discount = 0.0 if ends[s_next] else gamma
+        changes[t] = backup(pairs, s, a, float(R[s, a]), s_next, discount, alpha)
         if math.isnan(changes[t]):
             return -1
         earned += R[s, a]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -42,9 +43,7 @@ class _Typed:
         return self.call(pairs, *rest)
 
 
-_BACKUP = _Typed(
-    backup, "int64", "int64", "float64", "int64", "boolean", "int64", "float64", "float64"
-)
+_BACKUP = _Typed(backup, "int64", "int64", "float64", "int64", "float64", "float64")
 _BOLTZMANN = _Typed(draw_boltzmann, "int64", "float64", "float64")
 _GREEDY = _Typed(draw_greedy, "int64", "float64")
 
@@ -210,11 +209,14 @@ class QLearner:
             pair = integer("s", s, 0, len(self.Q) - 1), integer("a", a, 0, len(self.Q[0]) - 1)
             alpha = self._schedule(int(self.visits[pair]) + 1)
         try:
+            discount = self._gamma
+            if n_steps != 1:
+                discount = discount**n_steps if (n_steps | 0) > 0 else math.nan
+            if terminated:
+                discount = 0.0
             # The bitwise or refuses what is no integer, and is negative if any of them is.
-            if (s | a | s_next | n_steps) >= 0:
-                change = _BACKUP.call(
-                    self._pairs, s, a, r, s_next, terminated, n_steps, alpha, self._gamma
-                )
+            if (s | a | s_next) >= 0:
+                change = _BACKUP.call(self._pairs, s, a, r, s_next, discount, alpha)
                 if change == change:
                     return change
         except (TypeError, OverflowError):
@@ -485,8 +487,8 @@ class QLearner:
             integer("s", s, 0, self._pairs.shape[0] - 1)
             integer("a", a, 0, self._pairs.shape[1] - 1)
             number("r", r)
+            integer("n_steps", n_steps, 1)
             integer("s_next", s_next, 0, self._pairs.shape[0] - 1)
-            integer("n_steps", n_steps, 1, 2**63 - 1)
         except ValueError as error:
             return error
         return ValueError(f"r must leave Q({s}, {a}) finite, got {r!r}")

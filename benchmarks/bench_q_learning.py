@@ -1,0 +1,142 @@
+"""Q-learning and planning against other libraries, run in turn in one process.
+
+    python benchmarks/bench_q_learning.py
+
+A peer that is not installed (mushroom-rl, quantecon, pymdptoolbox) is left out. Each figure is the
+median of several rounds; a round runs ourselves and every peer once, so that a busy machine slows
+all of them alike, and the ratio is the median of the ratios of the rounds.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+import warnings
+from collections.abc import Callable
+
+import numpy as np
+
+from arkaq_edu.mdp import MDP, QLearner, policy_iteration, practise, value_iteration
+
+N_STATES, N_ACTIONS, GAMMA = 337, 3, 0.9
+ROUNDS = 7
+
+
+def world(n_states: int = N_STATES, n_actions: int = N_ACTIONS) -> MDP:
+    """Return a random model in which a few states can follow each."""
+    rng = np.random.default_rng(0)
+    T = rng.dirichlet(np.full(n_states, 0.05), size=(n_actions, n_states))
+    return MDP(T, rng.normal(size=(n_states, n_actions)), GAMMA)
+
+
+def seconds(run: Callable[[], object]) -> float:
+    start = time.perf_counter()
+    run()
+    return time.perf_counter() - start
+
+
+def compare(title: str, amount: int, ours: Callable[[], object], **peers: tuple[int, Callable]):
+    """Time `ours` (doing `amount` of the work) and each peer (its own amount) in turn."""
+    ours()
+    rounds = []
+    for _ in range(ROUNDS):
+        mine = seconds(ours) / amount
+        rounds.append((mine, {name: seconds(run) / n for name, (n, run) in peers.items()}))
+    mine = statistics.median(r[0] for r in rounds)
+    print(f"{title:34} {mine * 1e6:12.3f} us {1 / mine:16,.0f} /s")
+    for name in peers:
+        peer = statistics.median(r[1][name] for r in rounds)
+        ratio = statistics.median(r[1][name] / r[0] for r in rounds)
+        print(f"    {name:30} {peer * 1e6:12.3f} us {1 / peer:16,.0f} /s   we: {ratio:,.1f} times")
+
+
+def mushroom(n: int) -> dict[str, Callable[[], object]]:
+    """Return mushroom-rl's replay of n transitions and its learning loop of n steps."""
+    try:
+        from mushroom_rl.algorithms.value import QLearning
+        from mushroom_rl.core import Core
+        from mushroom_rl.environments import FiniteMDP
+        from mushroom_rl.policy import EpsGreedy
+        from mushroom_rl.utils.parameters import Parameter
+    except ImportError:
+        return {}
+    model = world()
+    reward = np.repeat(model.R[:, :, None], N_STATES, axis=2)
+    env = FiniteMDP(model.T.transpose(1, 0, 2).copy(), reward, gamma=GAMMA, horizon=100)
+    agent = QLearning(env.info, EpsGreedy(Parameter(1.0)), Parameter(0.5))
+    core = Core(agent, env)
+    rng = np.random.default_rng(1)
+    s, s_next = rng.integers(N_STATES, size=(2, n, 1))
+    a = rng.integers(N_ACTIONS, size=(n, 1))
+
+    def replay() -> None:
+        for t in range(n):
+            agent._update(s[t], a[t], 1.0, s_next[t], False)
+
+    def learn() -> None:
+        core.learn(n_steps=n, n_steps_per_fit=1, quiet=True)
+
+    return {"replay": replay, "learn": learn}
+
+
+def q_updates() -> None:
+    n = 200_000
+    rng = np.random.default_rng(1)
+    s, s_next = rng.integers(N_STATES, size=(2, n))
+    a, r = rng.integers(N_ACTIONS, size=n), rng.normal(size=n)
+    learner = QLearner(N_STATES, N_ACTIONS, alpha=0.5, gamma=GAMMA, rng=0)
+    rows = list(zip(s.tolist(), a.tolist(), r.tolist(), s_next.tolist(), strict=True))
+    model = world()
+
+    def updates() -> None:
+        update = learner.update
+        for s, a, r, s_next in rows:
+            update(s, a, r, s_next)
+
+    def decisions() -> None:
+        for s, _, r, s_next in rows:
+            learner.update(s, learner.boltzmann(s, 0.5), r, s_next)
+
+    peer = mushroom(5000)
+    replay = {"mushroom-rl replay": (5000, peer["replay"])} if peer else {}
+    learn = {"mushroom-rl learning loop": (5000, peer["learn"])} if peer else {}
+    compare("update, called from Python", n, updates, **replay, **learn)
+    compare("boltzmann + update, from Python", n, decisions, **learn)
+    compare("replay, one call", n, lambda: learner.replay(s, a, r, s_next, False), **replay)
+    compare("practise (model, choice, update)", n, lambda: practise(model, learner, n), **learn)
+
+
+def planning() -> None:
+    model = world(200, 4)
+    peers = {}
+    try:
+        from quantecon.markov import DiscreteDP
+
+        ddp = DiscreteDP(model.R, model.T.transpose(1, 0, 2).copy(), GAMMA)
+        peers["quantecon modified policy it."] = (
+            1,
+            lambda: ddp.solve(method="modified_policy_iteration", epsilon=1e-6),
+        )
+    except ImportError:
+        pass
+    try:
+        from mdptoolbox.mdp import PolicyIteration
+
+        peers["pymdptoolbox policy iteration"] = (
+            1,
+            lambda: PolicyIteration(model.T, model.R, GAMMA).run(),
+        )
+    except ImportError:
+        pass
+    compare("policy iteration, 200 x 4", 1, lambda: policy_iteration(model), **peers)
+    compare("value iteration to 1e-6, 200 x 4", 1, lambda: value_iteration(model, 1e-6), **peers)
+
+
+def main() -> None:
+    warnings.simplefilter("ignore")
+    q_updates()
+    planning()
+
+
+if __name__ == "__main__":
+    main()
