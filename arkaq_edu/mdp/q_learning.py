@@ -214,11 +214,11 @@ class QLearner:
                 discount = discount**n_steps if (n_steps | 0) > 0 else math.nan
             if terminated:
                 discount = 0.0
-            # The bitwise or refuses what is no integer, and is negative if any of them is.
-            if (s | a | s_next) >= 0:
-                change = _BACKUP.call(self._pairs, s, a, r, s_next, discount, alpha)
-                if change == change:
-                    return change
+            # Refuses what is no integer, which the kernel would round.
+            s | a | s_next  # noqa: B018
+            change = _BACKUP.call(self._pairs, s, a, r, s_next, discount, alpha)
+            if change == change:
+                return change
         except (TypeError, OverflowError):
             pass
         raise self._complaint(s, a, r, s_next, n_steps)
