@@ -1,5 +1,7 @@
 import itertools
 import math
+import subprocess
+import sys
 
 import gymnasium
 import numpy as np
@@ -377,3 +379,13 @@ def test_the_table_of_an_environment_is_what_the_environment_does():
 def test_an_environment_without_a_table_is_refused(name):
     with pytest.raises(ValueError, match="env must have a transition table P, got <"):
         MDP.from_gymnasium(name)
+
+
+def test_the_room_knows_nothing_of_the_rooms_above():
+    code = (
+        "import sys, arkaq_edu.mdp\n"
+        "above = 'pymunk matplotlib ipywidgets sklearn arkaq_edu.field arkaq_edu.arkaq'.split()\n"
+        "print([name for name in above if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

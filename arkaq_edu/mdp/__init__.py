@@ -1,6 +1,8 @@
 """Decisions in a world that is seen: bandits, Markov decision processes, Q-learning.
 
-Thesis chapters 2.1, 2.2, 3 and 4.3.
+Thesis chapters 2.1, 2.2, 3 and 4.3. Learning from rewards is a third kind beside learning with a
+teacher and learning without any (the thesis counts it, and ARKAQ, as unsupervised; in ARKAQ only
+the segmentation of the world is).
 
 - `model`, `planning`: an MDP, and the best actions from knowing it;
 - `optimality`, `performance`: what "best" means, and how good learning was;

@@ -53,9 +53,10 @@ def value_iteration(
     gamma^n max|R| / (1 - gamma) of it. Whichever is first below `tol` ends the iteration. A policy
     that is greedy for values within e of V* earns at most 2 gamma e / (1 - gamma) less than V*.
 
-    It is V that converges to V*, and not the other way round as under the thesis's equation 2.8.
-    Equation 2.7 there, V_1 = gamma max_a R(s, a), is not what 2.8 gives from V_0 = 0: the first
-    reward is not discounted, V_1 = max_a R(s, a).
+    Where the thesis prints otherwise: the argument x of 2.6 and 2.7 is the state s, and 2.6, the
+    best immediate reward, is the policy for one step to go. Equation 2.7, V_1 = gamma max_a R(s,
+    a), is not what 2.8 gives from V_0 = 0: the first reward is not discounted. In 2.8 the maximum
+    is over a, and it is V that converges to V*, not the other way round.
 
     References
     ----------

@@ -215,7 +215,7 @@ class QLearner:
             if terminated:
                 discount = 0.0
             # Refuses what is no integer, which the kernel would round.
-            s | a | s_next  # noqa: B018
+            s | a | s_next
             change = _BACKUP.call(self._pairs, s, a, r, s_next, discount, alpha)
             if change == change:
                 return change
