@@ -252,9 +252,9 @@ def update(M, gates, z, x, y):
 def settled(now, before):
     """Tell whether a covariance moved by no more than a rounding of its standard deviations."""
     for i in range(now.shape[0]):
+        rounding = ROUNDING * math.sqrt(abs(now[i, i]))
         for j in range(i + 1):
-            moved = (now[i, j] - before[i, j]) / ROUNDING
-            if moved * moved > now[i, i] * now[j, j]:
+            if abs(now[i, j] - before[i, j]) > rounding * math.sqrt(abs(now[j, j])):
                 return False
     return True
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu._checks import array, covariance, number
 from arkaq_edu.kalman import _kernels
+from arkaq_edu.kalman.consistency import chi_square_band, chi_square_quantile
 
 Array = NDArray[np.float64]
 
@@ -23,6 +24,7 @@ _PLANES = {
     "K": (_kernels.K, "nm"),
     "S": (_kernels.S, "mm"),
 }
+_NOT_A_SIGHTING = (-1.0, 0.0, False)
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,50 @@ class KalmanTrace:
     nis: Array
     accepted: NDArray[np.bool_]
     log_likelihood: float
+
+    def nis_band(self, probability: float = 0.95) -> tuple[float, float, float]:
+        """Return the mean NIS of the track and the band in which a right filter keeps it.
+
+        If A, H, Q and R are right, innovations are independent and their NIS sum to a chi-square
+        variable. A mean above the band says that the filter is too sure of itself (Q or R too
+        small), a mean below it that it is too modest.
+
+        Parameters
+        ----------
+        probability : float, default 0.95
+            With which the mean of a right filter falls inside, in (0, 1).
+
+        Returns
+        -------
+        mean, low, high : float
+            Over the rows whose sighting was used. NaN if there are none.
+
+        Raises
+        ------
+        ValueError
+            If `probability` is not in (0, 1).
+
+        References
+        ----------
+        Y. Bar-Shalom, X. R. Li and T. Kirubarajan, Estimation with Applications to Tracking and
+        Navigation (2001), section 5.4.
+
+        Examples
+        --------
+        A filter told that sigma is 10 mm where it is 30:
+
+        >>> seen = np.random.default_rng(0).normal(0.0, 30.0, (200, 1))
+        >>> kf = KalmanFilter([[1]], [[1]], [[0]], [[10.0**2]])
+        >>> mean, low, high = kf.filter(seen).nis_band()
+        >>> print(f"{mean:.1f}, but a right filter stays in [{low:.2f}, {high:.2f}]")
+        8.3, but a right filter stays in [0.81, 1.21]
+        """
+        rows = int(self.accepted.sum())
+        entries = int((~np.isnan(self.innovation[self.accepted])).sum())
+        if rows == 0:
+            return np.nan, np.nan, np.nan
+        low, high = chi_square_band(entries / rows, rows, probability)
+        return float(self.nis[self.accepted].mean()), low, high
 
 
 def _snapshot(
@@ -105,9 +151,9 @@ class KalmanFilter:
     x0 : array_like, shape (n,), optional
         Estimate before the first predict; zeros by default.
     P0 : array_like, shape (n, n), optional
-        Its covariance. By default `x0` is taken to be known a million times worse than one
-        sighting tells, so the first sighting overrules it whatever the units are: every state has
-        the variance 1e6 times the largest R_ii / (H H')_ii (1e6 where R is zero).
+        Its covariance. By default nothing is known: every state has the variance 1e6, or 1e6 times
+        the largest R_ii / (H H')_ii if that is more. So the first sighting is a million times
+        surer than `x0` and overrules it, and nothing is known of the states it does not show.
     gate : float, optional
         Probability in (0, 1) with which a true sighting shall pass. A sighting whose NIS exceeds
         this quantile of the chi-square distribution is an outlier and is treated as missing.
@@ -148,9 +194,9 @@ class KalmanFilter:
     - Section 5.2 sets R to the swings seen at far distances, 100 mm and .05 rad. R holds
       variances: as printed they mean sigma = 10 mm and .22 rad. A swing of 3 sigma gives
       R = diag(1111, .00028), one of 1 sigma diag(10^4, .0025).
-    - Its Q = diag(.001, .0001, .0001, .000001) is so small beside that R that a jump of the ball,
-      as after a footstep or a reset, takes dozens of updates to be believed. Footsteps are known:
-      pass them as ``B u``. After a reset, call `reset`.
+    - Its Q = diag(.001, .0001, .0001, .000001) is so small beside that R that with dt = 1 a jump of
+      the distance, as after a footstep or a reset, takes 30 updates to be believed to 90 %.
+      Footsteps are known: pass them as ``B u``. After a reset, call `reset`.
 
     References
     ----------
@@ -192,12 +238,12 @@ class KalmanFilter:
         gate: float | None = None,
     ) -> None:
         n = len(array("A", A, (None, None)))
+        A = array("A", A, (n, n))
         m = len(array("H", H, (None, n)))
         self._memory = np.zeros((len(_kernels.PLANES), max(n, m), max(n, m)))
         self._x, self._innovation, self._no_push = np.zeros(n), np.zeros(m), np.zeros(n)
         self._z_shape = (m,)
-        self._own("A")[:] = array("A", A, (n, n))
-        self._own("H")[:] = array("H", H, (m, n))
+        self._own("A")[:], self._own("H")[:] = A, H
         self._own("Q")[:] = covariance("Q", Q, n)
         self._own("R")[:] = covariance("R", R, m)
         self._B = np.zeros((n, 0)) if B is None else np.array(array("B", B, (n, None)))
@@ -206,10 +252,8 @@ class KalmanFilter:
         self._gates = np.full(m + 1, np.inf)
         self.gate = gate
         if gate is not None:
-            from scipy.special import chdtri
-
-            missed = 1 - number("gate", gate, 0, 1, open_low=True, open_high=True)
-            self._gates[1:] = chdtri(np.arange(1, m + 1), missed)
+            number("gate", gate, 0, 1, open_low=True, open_high=True)
+            self._gates[1:] = [chi_square_quantile(gate, seen) for seen in range(1, m + 1)]
         self.reset()
 
     x = _snapshot("x", "The estimate.", lambda self, value: array("x", value, self._x.shape))
@@ -312,14 +356,12 @@ class KalmanFilter:
                 sighting = sighting.copy()
         except (TypeError, ValueError):
             sighting = np.empty(0)
-        nis = -1.0
+        scores = _NOT_A_SIGHTING
         if sighting.shape == self._z_shape:
-            nis, self.log_likelihood, self.accepted = _kernels.update(
-                self._memory, self._gates, sighting, self._x, self._innovation
-            )
-        if nis == -1.0:
+            scores = _kernels.update(self._memory, self._gates, sighting, self._x, self._innovation)
+        if scores[0] == -1.0:
             array("z", z, self._z_shape, allow_nan=True)
-        self.nis = nis
+        self.nis, self.log_likelihood, self.accepted = scores
         return self._x.copy()
 
     def filter(
@@ -379,6 +421,48 @@ class KalmanFilter:
         )
         return KalmanTrace(**rows, accepted=accepted, log_likelihood=log_likelihood)
 
+    def smooth(self, trace: KalmanTrace) -> tuple[Array, Array]:
+        """Look back along a filtered track: estimate each row from all sightings, later ones too.
+
+        The smoother of Rauch, Tung and Striebel. The next state is a sighting of this one, with A
+        for H and Q for R, so a row is smoothed by one more measurement update.
+
+        Parameters
+        ----------
+        trace : KalmanTrace
+            What `filter` returned, of this filter.
+
+        Returns
+        -------
+        x, P : ndarray, shapes (T, n) and (T, n, n)
+            The smoothed estimates and their covariances.
+
+        Raises
+        ------
+        ValueError
+            If the trace has another number of states.
+
+        References
+        ----------
+        H. E. Rauch, F. Tung and C. T. Striebel, "Maximum likelihood estimates of linear dynamic
+        systems", AIAA Journal 3 (1965). Not in the thesis.
+
+        Examples
+        --------
+        A standing thing: in the end all rows agree on the mean.
+
+        >>> kf = KalmanFilter([[1]], [[1]], [[0]], [[1]], P0=[[1e9]])
+        >>> x, P = kf.smooth(kf.filter([[1.0], [2.0], [6.0]]))
+        >>> x[:, 0].round(6)
+        array([3., 3., 3.])
+        """
+        n = self._x.size
+        x, P = np.array(array("trace.x", trace.x, (None, n))), trace.P.copy()
+        memory = np.zeros((len(_kernels.PLANES), n, n))
+        memory[_kernels.H], memory[_kernels.R] = self._own("A"), self._own("Q")
+        _kernels.smooth(memory, x, P, trace.x_prior)
+        return x, P
+
     def _own(self, name: str) -> Array:
         """Return the filter's own array of that name, to read or to fill."""
         if name not in _PLANES:
@@ -389,11 +473,10 @@ class KalmanFilter:
         return self._memory[plane, :rows, :columns]
 
     def _wide(self) -> Array:
-        """Return the P0 beside which one sighting is a million times surer."""
+        """Return a P0 beside which one sighting is a million times surer."""
         reach = (self._own("H") ** 2).sum(axis=1)
         variances = np.diag(self._own("R"))[reach > 0] / reach[reach > 0]
-        widest = float(variances.max(initial=0.0))
-        return 1e6 * (widest or 1.0) * np.eye(self._x.size)
+        return 1e6 * float(variances.max(initial=1.0)) * np.eye(self._x.size)
 
     def _noise(self, R: ArrayLike) -> Array:
         """Return R as a covariance of its own, by a quick look where that is enough."""
