@@ -1,0 +1,28 @@
+"""The thesis's experiments: configuration in, tidy tables out.
+
+- `streams`: sightings recorded on the field, and what they say of the senses;
+- `approach`: training, walking to the ball, and how well it is done;
+- `reproduce`: thesis against here, over many seeds.
+"""
+
+import lazy_loader as _lazy
+
+__getattr__, __dir__, __all__ = _lazy.attach(
+    __name__,
+    submod_attrs={
+        "approach": [
+            "STARTS",
+            "Walk",
+            "at_random",
+            "evaluate",
+            "greedy",
+            "load_agent",
+            "make_task",
+            "planner",
+            "train",
+            "walk",
+        ],
+        "reproduce": ["results", "thesis_numbers"],
+        "streams": ["calibrate", "count_centers", "load_sightings", "patterns", "record_sightings"],
+    },
+)
