@@ -103,7 +103,7 @@ def test_a_figure_makes_its_own_axes_and_shows_nothing(monkeypatch):
     monkeypatch.setattr(plt, "show", lambda *_: pytest.fail("plt.show was called"))
     before = plt.get_fignums()
     plot = segmentation.figure_5_10()
-    assert plot.n_centers == leader_count(patterns, 0.15, 0.5)
+    assert plot.n_centers == leader_count(patterns, 0.15, segmentation.LEARNING_RATE)
     assert plt.get_fignums() == [*before, plot.ax.figure.number]
     plt.close(plot.ax.figure)
     segmentation.figure_5_10(Figure().subplots())

@@ -34,7 +34,7 @@ def explorer():
 
 @pytest.fixture(scope="module")
 def explored():
-    return vigilance_explorer(PATTERNS)
+    return vigilance_explorer(PATTERNS, learning_rate=0.5)
 
 
 @pytest.mark.parametrize("at", [0.025, 0.05, 0.075, 0.1, 0.11, 0.15, 0.2])

@@ -30,12 +30,15 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import Voronoi
 
 from .. import _checks
-from ..arkaq.sensing import Sensing
+from ..arkaq import Learning, Sensing
 from ..art import EuclideanART
 from . import style
 
 #: The numbers of centres the thesis prints, by vigilance (figures 5.10 to 5.14).
 THESIS_COUNTS = {0.15: 137, 0.1: 333, 0.075: 519, 0.05: 825, 0.025: 1933}
+
+#: The update factor eta with which the agent learns.
+LEARNING_RATE = Learning().learning_rate
 
 #: What the scaled interval from -1 to 1 stands for.
 SENSING = Sensing.thesis()
@@ -62,10 +65,16 @@ def recorded_patterns() -> NDArray[np.float64]:
     -------
     array, shape (n, 2)
         Distance and orientation, each in [-1, 1], in the order in which they were seen.
-    """
-    from ..experiments.streams import load_sightings
 
-    return SENSING.scale(load_sightings()[["distance", "orientation"]])
+    Examples
+    --------
+    >>> patterns = recorded_patterns()
+    >>> patterns.shape[1], bool(abs(patterns).max() <= 1)
+    (2, True)
+    """
+    from ..experiments import streams  # brings the whole field with it
+
+    return streams.patterns(streams.load_sightings())
 
 
 def in_view(patterns: ArrayLike) -> NDArray[np.float64]:
@@ -264,7 +273,7 @@ def plot_segmentation(
     ax: Axes | None = None,
     *,
     patterns: ArrayLike | None = None,
-    learning_rate: float | str = 0.5,
+    learning_rate: float | str = LEARNING_RATE,
 ) -> CentersPlot:
     """Segment a stream of patterns and draw the centres, with the thesis's count and ours.
 

@@ -42,7 +42,7 @@ CELLS = ("#d6f4f4", "#e1e5cf", "#a4e2f7", "#dccda4", "#a5cacc", "#afbda8")
 
 # What the camera can show: half its width is 0.4965 rad; the thesis gives 0.5 rad, 200 to 4100 mm.
 VIEW_ORIENTATION = (0.5, -0.5)
-VIEW_DISTANCE = (0.0, 4300.0)
+VIEW_DISTANCE = (0.0, 4500.0)
 
 
 def axes(ax: Axes | None = None, *, xlabel: str = "", ylabel: str = "", title: str = "") -> Axes:

@@ -157,12 +157,14 @@ function render({ model, el }) {
     );
     const ratio = window.devicePixelRatio;
     const [boxes, height] = arrange(scene.panels, width);
-    canvas.width = Math.round(width * ratio);
-    canvas.height = Math.round(height * ratio);
-    canvas.style.width = `${width}px`;
-    canvas.style.height = `${height}px`;
+    const size = [Math.round(width * ratio), Math.round(height * ratio)];
+    if (canvas.width !== size[0] || canvas.height !== size[1]) {
+      [canvas.width, canvas.height] = size;
+      canvas.style.width = `${width}px`;
+      canvas.style.height = `${height}px`;
+    }
     const ctx = canvas.getContext("2d");
-    ctx.scale(ratio, ratio);
+    ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
     ctx.fillStyle = "white";
     ctx.fillRect(0, 0, width, height);
     ctx.font = `12px ${getComputedStyle(el).fontFamily}`;
@@ -183,12 +185,12 @@ function render({ model, el }) {
     screen.addEventListener("change", watchScreen);
     repaint();
   };
-  const size = new ResizeObserver(repaint);
-  size.observe(el);
+  const room = new ResizeObserver(repaint);
+  room.observe(el);
   model.on("change:scene change:numbers", repaint);
   watchScreen();
   return () => {
-    size.disconnect();
+    room.disconnect();
     screen.removeEventListener("change", watchScreen);
     model.off("change:scene change:numbers", repaint);
     cancelAnimationFrame(frame);

@@ -20,7 +20,7 @@ VIGILANCES = tuple(round(0.025 + 0.005 * step, 3) for step in range(36))
 
 
 def vigilance_explorer(
-    patterns: ArrayLike | None = None, learning_rate: float | str = 0.5
+    patterns: ArrayLike | None = None, learning_rate: float | str = segmentation.LEARNING_RATE
 ) -> Explorer:
     """Return a slider of vigilance above the map of categories and the thesis's five counts.
 

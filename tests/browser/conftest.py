@@ -1,0 +1,132 @@
+"""A JupyterLab on a copy of the course, and a real Chromium in front of it."""
+
+import json
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import time
+import uuid
+from pathlib import Path
+from urllib.error import URLError
+from urllib.request import urlopen
+
+import pytest
+
+NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "chrome"))), None)
+QUIET = (
+    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
+    "--disable-background-networking", "--disable-component-update",
+)  # fmt: skip
+PATIENCE = 120  # seconds; only a broken page, or a machine on its knees, takes so long
+SETTINGS = {
+    "apputils-extension/notification": {"fetchNews": "false", "checkForUpdates": False},
+    # Every cell is in the page, whether it is in view or not.
+    "notebook-extension/tracker": {"windowingMode": "none"},
+}
+
+
+def pytest_collection_modifyitems(items):
+    for item in items:
+        if Path(__file__).parent in item.path.parents:
+            item.add_marker("browser")
+            if CHROMIUM is None:
+                item.add_marker(pytest.mark.skip(reason="needs Chromium, and finds none on PATH"))
+
+
+@pytest.fixture(scope="session")
+def lab(tmp_path_factory):
+    """The address of a JupyterLab that knows nothing of this user's files and settings."""
+    home = tmp_path_factory.mktemp("lab")
+    course = home / "course"
+    shutil.copytree(NOTEBOOKS, course, ignore=shutil.ignore_patterns(".*", "__pycache__"))
+    for name, values in SETTINGS.items():
+        file = home / "settings" / "@jupyterlab" / f"{name}.jupyterlab-settings"
+        file.parent.mkdir(parents=True)
+        file.write_text(json.dumps(values))
+    folders = {
+        "IPYTHONDIR": "ipython", "JUPYTERLAB_SETTINGS_DIR": "settings",
+        "JUPYTERLAB_WORKSPACES_DIR": "workspaces", "JUPYTER_CONFIG_DIR": "config",
+        "JUPYTER_DATA_DIR": "data", "JUPYTER_RUNTIME_DIR": "runtime",
+    }  # fmt: skip
+    environment = os.environ | {name: str(home / folder) for name, folder in folders.items()}
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        port = probe.getsockname()[1]
+    token = uuid.uuid4().hex
+    command = [
+        sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root", "--ip=127.0.0.1",
+        f"--port={port}", "--ServerApp.port_retries=0", f"--IdentityProvider.token={token}",
+        f"--ServerApp.root_dir={course}", "--LabApp.expose_app_in_browser=True",
+    ]  # fmt: skip
+    log = (home / "lab.log").open("w+")
+    server = subprocess.Popen(command, cwd=course, env=environment, stdout=log, stderr=log)
+    try:
+        _wait_for(f"http://127.0.0.1:{port}/api/status?token={token}", server, log)
+        yield f"http://127.0.0.1:{port}/lab/workspaces/{{workspace}}/tree/{{path}}?token={token}"
+    finally:
+        server.terminate()
+        server.wait(PATIENCE)
+        log.close()
+
+
+def _wait_for(address, server, log):
+    deadline = time.monotonic() + PATIENCE
+    while time.monotonic() < deadline and server.poll() is None:
+        try:
+            with urlopen(address, timeout=5):
+                return
+        except (URLError, TimeoutError, ConnectionError):
+            time.sleep(0.2)
+    log.seek(0)
+    pytest.fail(f"JupyterLab did not come up:\n{log.read()[-3000:]}")
+
+
+@pytest.fixture(scope="session")
+def chromium():
+    """A running Chromium."""
+    from playwright.sync_api import expect, sync_playwright
+
+    expect.set_options(timeout=1000 * PATIENCE)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=QUIET)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def open_notebook(lab, chromium):
+    """A function that opens a notebook of the course in a window, runs it, returns the page.
+
+    Options are those of a window: ``viewport``, ``device_scale_factor``.
+    """
+    windows = []
+
+    def open_(name, *, run=True, **options):
+        options = {"viewport": {"width": 1280, "height": 1000}, **options}
+        window = chromium.new_context(**options)
+        windows.append(window)
+        window.set_default_timeout(1000 * PATIENCE)
+        page = window.new_page()
+        page.goto(lab.format(workspace=uuid.uuid4().hex, path=name))
+        page.evaluate(READY)
+        if run:
+            page.evaluate("jupyterapp.commands.execute('notebook:run-all-cells')")
+        return page
+
+    yield open_
+    for window in windows:
+        window.pages[0].evaluate(SHUT_DOWN)
+        window.close()
+
+
+READY = """async () => {
+    const soon = () => new Promise((done) => setTimeout(done, 50));
+    while (!window.jupyterapp) await soon();
+    await jupyterapp.restored;
+    while (!jupyterapp.shell.currentWidget?.context) await soon();
+    await jupyterapp.shell.currentWidget.context.ready;
+    await jupyterapp.shell.currentWidget.sessionContext.ready;
+}"""
+SHUT_DOWN = "() => window.jupyterapp?.shell.currentWidget?.sessionContext?.shutdown()"
