@@ -86,11 +86,11 @@ class Sensing:
             (4100.0, 0.5),
             A=np.eye(2),
             H=np.eye(2),
-            Q=np.diag([4.5**2, 0.0235**2]),
+            Q=np.diag([4.4**2, 0.025**2]),
             R=np.diag([3.0**2, 0.001**2]),
             P0=np.diag([1950.0**2, 0.5**2]),
             B=[[-96.0, -96.0, -96.0], [0.0, -0.1, 0.1]],
-            range_noise=8.5e-6,
+            range_noise=7.4e-6,
         )
 
     def filter(self) -> KalmanFilter:

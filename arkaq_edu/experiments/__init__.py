@@ -22,7 +22,7 @@ __getattr__, __dir__, __all__ = _lazy.attach(
             "train",
             "walk",
         ],
-        "reproduce": ["results", "thesis_numbers"],
+        "reproduce": ["mean_nis", "results", "summary", "thesis_numbers"],
         "streams": ["calibrate", "count_centers", "load_sightings", "patterns", "record_sightings"],
     },
 )

@@ -1,0 +1,229 @@
+"""Thesis against here: every number it prints of the ball problem, and what is measured beside."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from joblib import Parallel, delayed
+from tqdm.auto import tqdm
+
+from arkaq_edu import _checks
+from arkaq_edu._paths import data_file
+from arkaq_edu.arkaq import Estimator, Learning, Sensing
+from arkaq_edu.experiments import approach, streams
+from arkaq_edu.field import World
+
+VIGILANCE = 0.1
+
+
+def thesis_numbers() -> pd.Series:
+    """Return the numbers the thesis prints of the ball problem, by quantity.
+
+    Examples
+    --------
+    >>> int(thesis_numbers()["centres, vigilance 0.1"])
+    333
+    """
+    return pd.read_csv(data_file("thesis.csv"), index_col="quantity").thesis
+
+
+def results(
+    seeds: int = 20,
+    approaches: int = 500,
+    folder: str | os.PathLike[str] | None = None,
+    jobs: int = -1,
+    progress: bool = True,
+    learning: Learning | None = None,
+) -> pd.DataFrame:
+    """Run the ball problem over many seeds and set it against the thesis.
+
+    Parameters
+    ----------
+    seeds : int
+        How many seeds; each has its own stream, its own training and its own fresh starts.
+    approaches : int
+        Approaches by which each policy of each seed is judged, uniform over the visible field
+        from 600 to 4100 mm.
+    folder : path, optional
+        Where to keep the trained agents, so that an interrupted run goes on where it was.
+    jobs : int
+        Processes at once; -1 for one a core.
+    progress : bool
+        Whether to show a progress bar.
+    learning : Learning, optional
+        Schedules and lengths of the trainings.
+
+    Returns
+    -------
+    DataFrame
+        Columns quantity, thesis (NaN where it prints none), mean, low and high (the 5th and 95th
+        percentile over the seeds), seeds.
+
+    References
+    ----------
+    Thesis 5.1.3.1, 5.2; figures 5.5, 5.10-5.14, 5.16-5.30.
+
+    Examples
+    --------
+    >>> brief = Learning(patterns=200, exploration=200, exploitation=0)
+    >>> table = results(seeds=1, approaches=2, jobs=1, progress=False, learning=brief)
+    >>> table.columns.tolist()
+    ['quantity', 'thesis', 'mean', 'low', 'high', 'seeds']
+    """
+    numbers = range(_checks.integer("seeds", seeds, 1))
+    tasks: list[Any] = []
+    for seed in numbers:
+        tasks += [delayed(_stream)(seed), delayed(_references)(seed, approaches)]
+        for sensing in ("consistent", "thesis"):
+            tasks.append(delayed(_training)(seed, sensing, approaches, folder, learning))
+    done = Parallel(n_jobs=jobs, return_as="generator_unordered")(tasks)
+    bar = tqdm(done, total=len(tasks), desc="reproduce", unit=" runs", disable=not progress)
+    return summary(pd.DataFrame(_flatten(bar)))
+
+
+def summary(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the table of thesis against here from single measurements.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        Columns quantity, seed, value.
+
+    Returns
+    -------
+    DataFrame
+        See `results`.
+
+    Examples
+    --------
+    >>> rows = pd.DataFrame({"quantity": "centres, vigilance 0.15", "seed": [0, 1],
+    ...                      "value": [150, 152]})
+    >>> summary(rows)[["quantity", "thesis", "mean", "seeds"]].values.tolist()
+    [['centres, vigilance 0.15', 137.0, 151.0, 2]]
+    """
+    rows = rows.sort_values(["quantity", "seed"])
+    by_quantity = rows.groupby("quantity").value
+    table = pd.DataFrame(
+        {
+            "mean": by_quantity.mean(),
+            "low": by_quantity.quantile(0.05),
+            "high": by_quantity.quantile(0.95),
+            "seeds": by_quantity.count(),
+        }
+    )
+    printed = thesis_numbers()
+    table.insert(0, "thesis", printed.reindex(table.index))
+    order = [*printed.index, *table.index.difference(printed.index)]
+    table = table.reindex([quantity for quantity in order if quantity in table.index])
+    return table.rename_axis("quantity").reset_index()
+
+
+def _flatten(runs: Iterable[tuple[int, dict[str, float]]]) -> list[dict[str, Any]]:
+    return [
+        {"quantity": quantity, "seed": seed, "value": value}
+        for seed, measured in runs
+        for quantity, value in measured.items()
+    ]
+
+
+def _stream(seed: int) -> tuple[int, dict[str, float]]:
+    """Measure one recorded stream, and one walk meant to go straight."""
+    stream = streams.record_sightings(seed=seed)
+    counts = streams.count_centers(streams.patterns(stream))
+    measured = {f"centres, vigilance {rho:g}": float(n) for rho, n in counts.items()}
+    for name in ("consistent", "thesis"):
+        measured[f"mean NIS (2 is right), {name} Kalman filter"] = mean_nis(
+            stream, getattr(Sensing, name)()
+        )
+    world = World(rng=seed)
+    world.reset((-2500.0, 0.0, 0.0), (0.0, 1500.0))
+    for _ in range(20):
+        world.cycle(100.0, 100.0)
+    _, y, heading = world.pose
+    measured["straight walk of 2 m: drift to the left (mm)"] = y
+    measured["straight walk of 2 m: turn to the right (rad)"] = -heading
+    return seed, measured
+
+
+def mean_nis(stream: pd.DataFrame, sensing: Sensing) -> float:
+    """Return the mean normalised innovation squared of a filter on a stream.
+
+    Parameters
+    ----------
+    stream : DataFrame
+        As `streams.record_sightings` returns it.
+    sensing : Sensing
+        The filter's settings.
+
+    Returns
+    -------
+    float
+        2, the number of measurements, if innovations are as large as the filter believes; more
+        if it is too sure of itself. The first sighting of an episode, which meets the prior, is
+        left out.
+
+    References
+    ----------
+    Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001,
+    section 5.4.
+
+    Examples
+    --------
+    >>> stream = streams.record_sightings(n=2000)
+    >>> bool(1.7 < mean_nis(stream, Sensing.consistent()) < 2.3)
+    True
+    """
+    senses, values = Estimator(sensing), []
+    looks = stream[["distance", "orientation", "visible"]].to_numpy()
+    for look, cycle, action in zip(looks, stream.cycle, stream.action, strict=True):
+        if cycle == 0:
+            senses.reset()
+        senses.observe(look, None if cycle == 0 else int(action))
+        if cycle > 0 and look[2]:
+            values.append(senses.kalman.nis)
+    return float(np.mean(values))
+
+
+def _training(
+    seed: int,
+    sensing: str,
+    approaches: int,
+    folder: str | os.PathLike[str] | None,
+    learning: Learning | None,
+) -> tuple[int, dict[str, float]]:
+    checkpoint = None
+    if folder is not None:
+        checkpoint = Path(folder) / "agents" / f"ball-{sensing}-seed{seed:02d}.npz"
+        checkpoint.parent.mkdir(parents=True, exist_ok=True)
+    agent = approach.train(
+        seed,
+        VIGILANCE,
+        sensing=sensing,
+        learning=learning,
+        checkpoint=checkpoint,
+        progress=False,
+    )
+    who = f"ARKAQ, {sensing} Kalman filter"
+    return seed, _judged(who, approach.greedy(agent), approaches, seed)
+
+
+def _references(seed: int, approaches: int) -> tuple[int, dict[str, float]]:
+    return seed, {
+        **_judged("planner that sees the truth", approach.planner(), approaches, seed),
+        **_judged("random actions", approach.at_random(seed), approaches, seed),
+    }
+
+
+def _judged(who: str, policy: approach.Policy, approaches: int, seed: int) -> dict[str, float]:
+    # Starts that no training has seen: their seeds begin far above the agents'.
+    table = approach.evaluate(policy, approaches, seed=10_000 + seed)
+    return {
+        f"ball reached (%), {who}": 100 * float(table.is_success.mean()),
+        f"+50 earned (%), {who}": 100 * float(table.bonus.mean()),
+        f"way walked over straight way (median), {who}": float(table.detour.median()),
+    }
