@@ -349,6 +349,13 @@ def test_negative_patterns_are_refused():
         ART2().trace([0.0, 1.0])
 
 
+def test_a_refused_fit_leaves_what_was_learned():
+    art = ART2().fit([[0.0, 1.0]])
+    with pytest.raises(ValueError, match="Negative"):
+        art.fit([[0.0, 1.0, -1.0]])
+    assert art.n_features_in_ == 2 and art.predict([[0.0, 1.0]]).tolist() == [0]
+
+
 def test_a_small_e_changes_little():
     X = analog_patterns(np.random.default_rng(0), 50, 5)
     exact, softened = ART2(0.95).fit(X), ART2(0.95, e=1e-9).fit(X)

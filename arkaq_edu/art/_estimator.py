@@ -8,7 +8,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from sklearn.base import BaseEstimator, ClusterMixin
-from sklearn.utils.validation import check_is_fitted, validate_data
+from sklearn.utils.validation import check_array, check_is_fitted, validate_data
 
 from .._checks import array
 
@@ -208,8 +208,10 @@ class Categories(ClusterMixin, BaseEstimator):
 
     def _patterns(self, X: ArrayLike, *, reset: bool) -> Floats:
         """Return `X` for the kernels: validated, and writeable, for they are compiled for that."""
-        checked: Any = validate_data(self, X, dtype=np.float64, order="C", reset=reset)
-        return np.require(self._admit(checked), requirements=["C", "W"])
+        checked = check_array(X, dtype=np.float64, order="C", estimator=self, input_name="X")
+        admitted = self._admit(checked)
+        validate_data(self, X, reset=reset, skip_check_array=True)  # number and names of features
+        return np.require(admitted, requirements=["C", "W"])
 
     def _pattern(self, x: ArrayLike) -> Floats:
         """Return `x` as one row for the kernels."""

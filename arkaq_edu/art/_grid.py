@@ -11,6 +11,9 @@ arrangement of the table never shows in a result, and it can be rebuilt from the
 
 The table is a pair of integer arrays: ``heads[b]`` is the first centre of bucket `b`, ``nexts[c]``
 the centre after `c` in its bucket, -1 the end. Cells that share a bucket cost time, not exactness.
+
+The learning rule, `learn`, stands at the end of this file and not with its class: numba's cache
+knows only the file of the function it compiled, and would miss a change in another.
 """
 
 import math
@@ -130,3 +133,44 @@ def link_all(centers, n, heads, nexts, scale):
         heads[bucket] = -1
     for c in range(n):
         link(c, bucket_of(centers[c], scale, len(heads)), heads, nexts)
+
+
+@kernel
+def learn(X, start, labels, centers, counts, n, heads, nexts, scale, vigilance, rate, limit):
+    """Present the patterns ``X[start:]`` in order; return where it stopped and how many centres.
+
+    It stops early when a centre is to be founded and ``len(centers)`` leaves no room for it.
+    A `rate` of 0 stands for one over the count.
+    """
+    for t in range(start, len(X)):
+        x = X[t]
+        j, d2 = nearest(x, centers, n, heads, nexts, scale, 1)
+        if math.sqrt(d2) < vigilance:
+            counts[j] += 1
+            eta = rate if rate > 0 else 1.0 / counts[j]
+            old = bucket_of(centers[j], scale, len(heads))
+            for i in range(len(x)):
+                centers[j, i] += eta * (x[i] - centers[j, i])
+            new = bucket_of(centers[j], scale, len(heads))
+            if new != old:
+                unlink(j, old, heads, nexts)
+                link(j, new, heads, nexts)
+        elif n < limit:
+            if n == len(centers):
+                return t, n
+            j = n
+            n += 1
+            centers[j] = x
+            counts[j] = 1
+            link(j, bucket_of(x, scale, len(heads)), heads, nexts)
+        else:
+            j, d2 = nearest(x, centers, n, heads, nexts, scale, ANY_DISTANCE)
+        labels[t] = j
+    return len(X), n
+
+
+@kernel
+def recall(X, labels, centers, n, heads, nexts, scale):
+    """Write the index of the nearest centre of each pattern of `X` into `labels`."""
+    for t in range(len(X)):
+        labels[t] = nearest(X[t], centers, n, heads, nexts, scale, ANY_DISTANCE)[0]

@@ -13,7 +13,6 @@ from .._checks import number
 from .._compiled import kernel
 from ._estimator import Categories, Floats, Labels
 from ._inlined import inlined
-from .art2a import normalise
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -72,6 +71,20 @@ def divide_by_norm(source, e, target):
         change = max(change, abs(value - target[i]))
         target[i] = value
     return change
+
+
+@kernel
+def enter(x, pattern):
+    """Write `x` scaled to norm 1 into `pattern` (the F0 stage); return false if all is silent."""
+    peak = 0.0
+    for i in range(len(x)):
+        peak = max(peak, x[i])
+    if peak == 0.0:
+        return False
+    for i in range(len(x)):
+        pattern[i] = x[i] / peak  # so that no square leaves the range of a float
+    divide_by_norm(pattern, 0.0, pattern)
+    return True
 
 
 @kernel
@@ -151,13 +164,15 @@ def present(pattern, F1, top_down, bottom_up, n, vigilance, knobs, steps, activi
         expectation = top_down[node] if node < n else silence
         F1[3] = seen
         expect(expectation, F1, d, e)
+        reset = settled = False
         for _ in range(MOST_CYCLES):
             norm_r = compare(F1, c, e)
             # Nothing is expected of an uncommitted node, so r has norm 1 there, rounding apart.
             reset = node < n and vigilance > e + norm_r
             row = record(F1, node, signal[node], norm_r, reset, row, steps, activity)
-            if reset or cycle(pattern, expectation, F1, a, b, d, theta, e, smooth) <= tol:
+            if reset or settled:
                 break
+            settled = cycle(pattern, expectation, F1, a, b, d, theta, e, smooth) <= tol
         if not reset:
             return node, row
         signal[node] = -1.0  # blocked for as long as this pattern lasts
@@ -200,7 +215,7 @@ def learn(X, start, labels, top_down, bottom_up, counts, n, vigilance, rate, kno
     steps, activity = np.empty((0, 4)), np.empty((0, 7, X.shape[1]))
     for t in range(start, len(X)):
         labels[t] = -1
-        if not normalise(X[t], pattern):
+        if not enter(X[t], pattern):
             continue
         node, _ = present(pattern, F1, top_down, bottom_up, n, vigilance, knobs, steps, activity)
         if node < 0:
@@ -230,7 +245,7 @@ def recall(X, labels, top_down, bottom_up, n, vigilance, knobs):
     steps, activity = np.empty((0, 4)), np.empty((0, 7, X.shape[1]))
     for t in range(len(X)):
         node = -1
-        if normalise(X[t], pattern):
+        if enter(X[t], pattern):
             node, _ = present(
                 pattern, F1, top_down, bottom_up, n, vigilance, knobs, steps, activity
             )
@@ -407,7 +422,7 @@ class ART2(Categories):
             step  node  norm_r  reset  winner
         6      2     1   0.951   True   False
         9      3     0   0.922   True   False
-        12     4     2   1.000  False    True
+        15     5     2   1.000  False    True
         """
         import pandas as pd
 
@@ -422,7 +437,7 @@ class ART2(Categories):
             room = max(room, rows)
             steps, activity = np.empty((room, 4)), np.empty((room, 7, m))
             winner = -1
-            if normalise(features, pattern):
+            if enter(features, pattern):
                 winner, rows = present(pattern, F1, *traces, steps, activity)
             else:
                 rows, steps[0], activity[0] = 1, (-1, np.nan, np.nan, False), 0.0

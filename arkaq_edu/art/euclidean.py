@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import sys
 from typing import Self
 
@@ -10,50 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .._checks import array, integer, number
-from .._compiled import kernel
 from ._estimator import Categories, Floats, Labels
-from ._grid import ANY_DISTANCE, bucket_of, half_cells_per_unit, link, link_all, nearest, unlink
-
-
-@kernel
-def learn(X, start, labels, centers, counts, n, heads, nexts, scale, vigilance, rate, limit):
-    """Present the patterns ``X[start:]`` in order; return where it stopped and how many centres.
-
-    It stops early when a centre is to be founded and ``len(centers)`` leaves no room for it.
-    A `rate` of 0 stands for one over the count.
-    """
-    for t in range(start, len(X)):
-        x = X[t]
-        j, d2 = nearest(x, centers, n, heads, nexts, scale, 1)
-        if math.sqrt(d2) < vigilance:
-            counts[j] += 1
-            eta = rate if rate > 0 else 1.0 / counts[j]
-            old = bucket_of(centers[j], scale, len(heads))
-            for i in range(len(x)):
-                centers[j, i] += eta * (x[i] - centers[j, i])
-            new = bucket_of(centers[j], scale, len(heads))
-            if new != old:
-                unlink(j, old, heads, nexts)
-                link(j, new, heads, nexts)
-        elif n < limit:
-            if n == len(centers):
-                return t, n
-            j = n
-            n += 1
-            centers[j] = x
-            counts[j] = 1
-            link(j, bucket_of(x, scale, len(heads)), heads, nexts)
-        else:
-            j, d2 = nearest(x, centers, n, heads, nexts, scale, ANY_DISTANCE)
-        labels[t] = j
-    return len(X), n
-
-
-@kernel
-def recall(X, labels, centers, n, heads, nexts, scale):
-    """Write the index of the nearest centre of each pattern of `X` into `labels`."""
-    for t in range(len(X)):
-        labels[t] = nearest(X[t], centers, n, heads, nexts, scale, ANY_DISTANCE)[0]
+from ._grid import half_cells_per_unit, learn, link_all, recall
 
 
 class EuclideanART(Categories):
