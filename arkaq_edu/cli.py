@@ -73,6 +73,91 @@ def lab(folder: Path | None, copy_only: bool, no_browser: bool) -> None:
         _start_jupyterlab((folder or course_folder()) / "notebooks", no_browser)
 
 
+_seed = click.option("--seed", type=click.IntRange(0), default=0, show_default=True)
+
+
+@main.command()
+@click.option("--vigilance", type=float, default=0.1, show_default=True, help="ART's vigilance.")
+@click.option(
+    "--kalman",
+    type=click.Choice(["consistent", "thesis"]),
+    default="consistent",
+    show_default=True,
+    help="The Kalman filter's settings.",
+)
+@click.option(
+    "--out",
+    type=click.Path(dir_okay=False, writable=True, path_type=Path),
+    default="agent.npz",
+    show_default=True,
+    help="File for the agent; an interrupted training in it is taken up again.",
+)
+@_seed
+def train(vigilance: float, kalman: str, out: Path, seed: int) -> None:
+    """Teach a robot to walk to the ball, and say how well it does."""
+    from arkaq_edu.experiments import evaluate, greedy
+    from arkaq_edu.experiments import train as learn
+
+    agent = learn(seed, vigilance, sensing=kalman, checkpoint=out)
+    judged = evaluate(greedy(agent), n=200, seed=10_000 + seed)
+    click.echo(
+        f"{out}: {agent.art.n_clusters_} states; ball reached in "
+        f"{judged.is_success.mean():.1%} of 200 fresh approaches, +50 in {judged.bonus.mean():.1%}"
+    )
+
+
+@main.command()
+@click.argument("agent", required=False, type=click.Path(exists=True, dir_okay=False))
+@click.option("--distance", type=float, default=3500.0, show_default=True, help="mm")
+@click.option("--orientation", type=float, default=0.35, show_default=True, help="rad, left > 0")
+@click.option(
+    "--out",
+    type=click.Path(dir_okay=False, writable=True, path_type=Path),
+    default="walk.gif",
+    show_default=True,
+    help="A .gif, or an .html page with a player.",
+)
+@_seed
+def watch(agent: str | None, distance: float, orientation: float, out: Path, seed: int) -> None:
+    """Film a trained AGENT (default: the course's own) on its way to the ball."""
+    from arkaq_edu.arkaq import Arkaq
+    from arkaq_edu.experiments import load_agent, walk
+    from arkaq_edu.figures.animation import save_walk
+
+    way = walk(Arkaq.load(agent) if agent else load_agent(), distance, orientation, seed)
+    save_walk(way, out)
+    end = "reached the ball" if way.is_success else "did not reach the ball"
+    click.echo(f"{out}: {end} in {len(way.table) - 1} footstep cycles, reward {way.reward:g}")
+
+
+@main.command()
+@click.option(
+    "--out",
+    type=click.Path(file_okay=False, path_type=Path),
+    default="reproduction",
+    show_default=True,
+    help="Folder for the page, the table and the agents.",
+)
+@click.option("--seeds", type=click.IntRange(1), default=20, show_default=True)
+@click.option("--approaches", type=click.IntRange(1), default=500, show_default=True)
+@click.option("--jobs", type=int, default=-1, show_default=True, help="Processes; -1: all cores.")
+def reproduce(out: Path, seeds: int, approaches: int, jobs: int) -> None:
+    """Run the ball problem over many seeds and set it against the thesis.
+
+    Writes index.html, which opens offline, and results.csv. The trained agents are kept: call it
+    again after an interruption, and it goes on where it was.
+    """
+    import matplotlib
+
+    matplotlib.use("agg")
+    from arkaq_edu.experiments import results
+    from arkaq_edu.figures.gallery import FIGURES
+    from arkaq_edu.figures.report import write_report
+
+    table = results(seeds, approaches, folder=out, jobs=jobs)
+    click.echo(write_report(out, table, FIGURES))
+
+
 def _start_jupyterlab(folder: Path, no_browser: bool) -> None:
     from jupyterlab.labapp import main as jupyterlab
 

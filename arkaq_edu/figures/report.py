@@ -1,0 +1,126 @@
+"""The report of a reproduction: one HTML page that opens offline, and a table as CSV."""
+
+from __future__ import annotations
+
+import base64
+import io
+import os
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from string import Template
+
+import pandas as pd
+
+from arkaq_edu import __version__
+
+_PAGE = Template("""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>ARKAQ learning: thesis and reproduction</title>
+<style>
+body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 72rem; margin: 2rem auto;
+       padding: 0 1rem; }
+h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 2.5rem; }
+table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
+th, td { padding: .3rem .8rem; border-bottom: 1px solid #ddd; text-align: right; }
+th:first-child, td:first-child { text-align: left; }
+thead th { border-bottom: 2px solid #888; }
+.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(26rem, 1fr)); gap: 2rem; }
+figure { margin: 0; } figure img { width: 100%; height: auto; }
+figcaption { color: #555; font-size: .9rem; }
+</style>
+</head>
+<body>
+<h1>The ball problem: thesis and reproduction</h1>
+<p>$summary</p>
+<h2>Numbers</h2>
+$table
+<p>Mean, 5th and 95th percentile over the seeds. A dash: the thesis prints no such number.</p>
+<h2>Figures</h2>
+<div class="figures">
+$figures
+</div>
+<p>arkaq_edu $version</p>
+</body>
+</html>
+""")
+_FIGURE = Template("""<figure id="figure-$number">
+<img alt="Figure $number: $caption" src="data:image/png;base64,$png">
+<figcaption>Figure $number. $caption</figcaption>
+</figure>""")
+
+
+def write_report(
+    folder: str | os.PathLike[str],
+    results: pd.DataFrame,
+    figures: Mapping[str, Callable[[], object]],
+) -> Path:
+    """Write ``results.csv`` and ``index.html``, each whole or not at all.
+
+    Parameters
+    ----------
+    folder : path
+        Where to; made if it does not exist.
+    results : DataFrame
+        Columns quantity, thesis, mean, low, high, seeds, as `experiments.results` returns it.
+    figures : mapping of str to function
+        For each figure's number a function that draws it on the current axes; the first line of
+        its docstring becomes the caption.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> table = pd.DataFrame([["centres", 137, 150, 147, 153, 20]],
+    ...                      columns=["quantity", "thesis", "mean", "low", "high", "seeds"])
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     page = write_report(folder, table, {}).read_text()
+    >>> "<td>137</td>" in page, "http" in page
+    (True, False)
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    _replace(folder / "results.csv", results.to_csv(index=False))
+    seeds = int(results.seeds.max())
+    text = results.copy()
+    for name in ("thesis", "mean", "low", "high"):
+        text[name] = [_number(value) for value in results[name]]
+    page = _PAGE.substitute(
+        summary=f"Every quantity was measured with {seeds} seed{'s' if seeds > 1 else ''}.",
+        table=text.to_html(index=False, border=0),
+        figures="\n".join(_figure(number, draw) for number, draw in figures.items()),
+        version=__version__,
+    )
+    _replace(folder / "index.html", page)
+    return folder / "index.html"
+
+
+def _number(value: float) -> str:
+    """Write a number with three digits at least, and no more decimals than it deserves."""
+    if pd.isna(value):
+        return "\N{EN DASH}"
+    return f"{value:.0f}" if abs(value) >= 100 or value == round(value) else f"{value:.3g}"
+
+
+def _figure(number: str, draw: Callable[[], object]) -> str:
+    import matplotlib.pyplot as plt
+
+    draw()
+    buffer = io.BytesIO()
+    plt.gcf().savefig(buffer, format="png", dpi=110, bbox_inches="tight")
+    plt.close("all")
+    caption = (draw.__doc__ or "").strip().splitlines()[0].rstrip(".") + "."
+    png = base64.b64encode(buffer.getvalue()).decode()
+    return _FIGURE.substitute(number=number, caption=caption, png=png)
+
+
+def _replace(path: Path, text: str) -> None:
+    part = path.with_name(path.name + ".part")
+    part.write_text(text, encoding="utf-8")
+    os.replace(part, path)
