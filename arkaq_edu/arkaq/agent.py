@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import time
-import zipfile
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -157,7 +156,8 @@ class Arkaq:
         env : gymnasium.Env
             The task; its observation's last entry tells whether there was a sighting.
         checkpoint : path, optional
-            A file to keep the run in, written between episodes every few seconds and at the end.
+            A file to keep the run in, written at once, between episodes every few seconds, and at
+            the end.
             If it exists, the run in it is taken up where it stopped, and comes to the same result
             as if it had never been interrupted.
         progress : bool
@@ -176,6 +176,7 @@ class Arkaq:
         if checkpoint is not None and Path(checkpoint).exists():
             self._resume(Path(checkpoint))
         keeper = _Keeper(self, checkpoint)
+        keeper.keep()
         if self._phase == _SEGMENTING:
             _Segmentation(self, env, keeper, progress).run()
             self._phase, self._done_in_phase = _LEARNING, 0
@@ -185,6 +186,7 @@ class Arkaq:
                 self.q = self._new_q(n_actions)
             _QLearning(self, env, keeper, progress).run()
             self._phase = _FINISHED
+        self.reset()
         keeper.keep()
         return self
 
@@ -212,7 +214,9 @@ class Arkaq:
             "done_in_phase": self._done_in_phase,
             "cycles": self.cycles,
         }
-        arrays: dict[str, Any] = {"settings": np.array(json.dumps(settings))}
+        # NumPy's numbers are as good as Python's as settings, but not to JSON.
+        text = json.dumps(settings, default=lambda number: number.item())
+        arrays: dict[str, Any] = {"settings": np.array(text)}
         if self.art.__sklearn_is_fitted__():
             arrays |= {"centers": self.art.cluster_centers_, "counts": self.art.counts_}
         if self.q is not None:
@@ -259,14 +263,18 @@ class Arkaq:
             agent._take_up(settings, arrays)
         except FileNotFoundError:
             raise
-        except (OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile) as error:
+        except Exception as error:  # a damaged archive fails in more ways than can be listed
             raise ValueError(f"{path} is not an agent that can be read: {error}") from error
         return agent
 
     def _take_up(self, settings: dict[str, Any], arrays: dict[str, NDArray]) -> None:
-        self._phase, self._done_in_phase = settings["phase"], settings["done_in_phase"]
-        self.cycles = settings["cycles"]
+        if settings["phase"] not in (_SEGMENTING, _LEARNING, _FINISHED):
+            raise ValueError(f"phase must be one of ours, got {settings['phase']!r}")
+        self._phase = settings["phase"]
+        self._done_in_phase = _checks.integer("done_in_phase", settings["done_in_phase"])
+        self.cycles = _checks.integer("cycles", settings["cycles"])
         if "centers" in arrays:
+            _checks.array("centers", arrays["centers"], (None, len(self.sensing.low)))
             self.art = EuclideanART.from_centers(
                 arrays["centers"], arrays["counts"], self.vigilance, self.learning.learning_rate
             )
@@ -275,7 +283,7 @@ class Arkaq:
             if n_states != self.art.n_clusters_:
                 raise ValueError(f"Q must have {self.art.n_clusters_} rows, got {n_states}")
             self.q = self._new_q(n_actions)
-            self.q.Q[:], self.q.visits[:] = arrays["Q"], arrays["visits"]
+            self.q.restore(arrays | {"rng": self.q.rng.bit_generator.state})
         self.history = [
             (_LEARNING if late else _SEGMENTING, int(n), float(reward), bool(success))
             for late, n, reward, success in arrays["history"].tolist()
