@@ -7,6 +7,7 @@ Set the environment variable ``NUMBA_DISABLE_JIT=1`` to step through a kernel in
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from typing import Any
 
@@ -38,4 +39,5 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """
     if numba is None:
         return function
-    return numba.njit(cache=True)(function)
+    # What was typed at a prompt has no file beside which the machine code could be kept.
+    return numba.njit(cache=os.path.exists(function.__code__.co_filename))(function)

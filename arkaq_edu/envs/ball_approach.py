@@ -84,7 +84,7 @@ class BallApproachEnv(gymnasium.Env[np.ndarray, int]):
     Examples
     --------
     >>> env = gymnasium.make("arkaq_edu:BallApproach-v0")
-    >>> observation, info = env.reset(seed=0, options={"distance": 900, "orientation": 0.0})
+    >>> observation, info = env.reset(seed=0, options={"distance": 950, "orientation": 0.0})
     >>> reward, cycles, terminated = 0.0, 0, False
     >>> while not terminated:
     ...     observation, reward, terminated, truncated, info = env.step(0)

@@ -104,7 +104,7 @@ def summary(rows: pd.DataFrame) -> pd.DataFrame:
     >>> rows = pd.DataFrame({"quantity": "centres, vigilance 0.15", "seed": [0, 1],
     ...                      "value": [150, 152]})
     >>> summary(rows)[["quantity", "thesis", "mean", "seeds"]].values.tolist()
-    [['centres, vigilance 0.15', 137.0, 151.0, 2]]
+    [['centres, vigilance 0.15', 137, 151.0, 2]]
     """
     rows = rows.sort_values(["quantity", "seed"])
     by_quantity = rows.groupby("quantity").value

@@ -91,7 +91,7 @@ class World:
     >>> for _ in range(10):
     ...     world.cycle(100.0, 100.0)
     >>> x, y, heading = world.pose
-    >>> 950 < x + 2500 < 1050, y > 0 > heading
+    >>> 950 < x + 2500 < 1050, y > 0, heading < 0
     (True, True, True)
     """
 
