@@ -41,9 +41,9 @@ def small_problems(draw):
     n, m, T = draw(st.integers(1, 3)), draw(st.integers(1, 2)), 6
     root_Q = rng.normal(size=(n, draw(st.integers(1, n))))  # Q may be singular
     root_R, root_P = rng.normal(size=(m, m)), rng.normal(size=(n, n))
-    A = rng.normal(size=(n, n))
+    turn, _ = np.linalg.qr(rng.normal(size=(n, n)))
     system = {
-        "A": A / np.linalg.norm(A, 2),
+        "A": turn * rng.uniform(0.5, 1.1, n),
         "H": rng.normal(size=(m, n)),
         "Q": root_Q @ root_Q.T,
         "R": root_R @ root_R.T + 0.1 * np.eye(m),

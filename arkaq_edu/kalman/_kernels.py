@@ -336,21 +336,29 @@ def follow(A, H, x0, K, Z, members, x):
 def smooth(M, xs, Ps, x_priors):
     """Smooth a filtered track in place, from its last row back.
 
-    The next state is a sighting of A x with noise Q: so each row is updated by it, with A in the
-    plane of H and Q in that of R. What is unsure of the next state comes back through the gain.
+    The next state is a sighting of A x with noise Q: so the gain is that of a measurement update
+    with A in the plane of H and Q in that of R. What is unsure of the next state comes back
+    through it: P = (I - K A) P (I - K A)' + K (Q + P_next) K'.
     """
     n = xs.shape[1]
     y = np.zeros(n)
     for t in range(xs.shape[0] - 2, -1, -1):
         M[P] = Ps[t]
         gain(M, y, n)
-        correct_covariance(M, n, n)
         y[:] = xs[t + 1] - x_priors[t + 1]
         correct_mean(M, y, xs[t])
-        M[A] = M[K]
+        for i in range(n):
+            for j in range(n):
+                total = 1.0 if i == j else 0.0
+                for k in range(n):
+                    total -= M[K, i, k] * M[H, k, j]
+                M[A, i, j] = total
+        M[Q] = 0.0
+        predict_covariance(M, n)
         M[Q] = M[P]
-        M[P] = Ps[t + 1]
-        predict_covariance(M, n)  # P = K P_next K' + P
+        M[A] = M[K]
+        M[P] = M[R] + Ps[t + 1]
+        predict_covariance(M, n)
         Ps[t] = M[P]
 
 
