@@ -79,8 +79,8 @@ def closer(x, centers, c, best, best_d2):
 def nearest(x, centers, n, heads, nexts, scale, reach):
     """Return the nearest of the first `n` centres and its squared distance.
 
-    The search ends at `reach` vigilances: what is returned is then some centre, or none (index
-    ``len(centers)``, distance infinite), not nearer than that.
+    The search ends at `reach` vigilances. Where no centre is that near, what is returned is some
+    centre further off, or none (index ``len(centers)``, distance infinite).
     """
     at_i, at_j, at_k = locate(x, scale)
     best, best_d2 = len(centers), np.inf
