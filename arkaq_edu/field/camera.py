@@ -197,7 +197,9 @@ def _shadow(aside, depth, size):
 def _measure(blob, z, tilt, min_pixels):
     """Return distance and orientation from a blob, or a distance of zero where it shows none."""
     n = blob[_N]
-    cut = (blob[_LEFT] > 0) + (blob[_RIGHT] > 0) + (blob[_TOP] > 0) + (blob[_BOTTOM] > 0)
+    cut = 0
+    for edge in (_LEFT, _RIGHT, _TOP, _BOTTOM):  # a sum of NumPy's booleans would be a boolean
+        cut += 1 if blob[edge] > 0 else 0
     if n < min_pixels or cut > 1:
         return 0.0, 0.0
     right = blob[_SUM_COL] / n + 0.5 - WIDTH / 2
