@@ -102,6 +102,7 @@ class ART2A(Categories):
     too, is the cosine of the angle between them. If the cosine of the most aligned template is
     strictly larger than `vigilance`, the template turns towards the pattern,
     ``z = unit(beta * x + (1 - beta) * z)``; otherwise a new template is founded at the pattern.
+    (Where the two cancel, which takes a negative vigilance, the template stays.)
     Here vigilance is a similarity: the larger, the more categories.
 
     The thesis scales each feature to [-1, 1] and takes the norm to be 1 by that; it runs from 0 to
