@@ -1,1 +1,12 @@
-"""One function for each figure of the thesis, and the visual grammar they share."""
+"""One function for each figure of the thesis, and the visual grammar they share.
+
+`gallery.FIGURES` leads from a figure's number to its function, ``gallery.draw("5.10")`` draws it.
+"""
+
+import lazy_loader as _lazy
+
+__getattr__, __dir__, __all__ = _lazy.attach(
+    __name__,
+    submodules=["automata", "field", "gallery", "policy", "segmentation", "style", "trajectories"],
+    submod_attrs={"gallery": ["FIGURES", "draw"]},
+)

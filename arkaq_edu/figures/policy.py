@@ -1,0 +1,140 @@
+"""Figure 5.16: what the agent does, state by state.
+
+References
+----------
+Thesis, section 5.2.2 and figure 5.16.
+
+Examples
+--------
+>>> import numpy as np
+>>> from matplotlib.figure import Figure
+>>> centers = np.array([[0.0, -0.5], [0.0, 0.5]])
+>>> plot = plot_policy(centers, [2, 1], Figure().subplots())
+>>> plot.marks["left"].get_xdata()
+array([0.25])
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
+from matplotlib.path import Path
+from matplotlib.transforms import Affine2D
+from numpy.typing import ArrayLike
+
+from .. import _checks
+from ..arkaq import Arkaq
+from ..envs.ball_approach import ACTIONS
+from . import style
+from .segmentation import DISTANCE, ORIENTATION, THESIS_COUNTS, in_view, map_of
+
+_UP = Path([(-0.2, -1), (-0.2, 0), (-0.7, 0), (0, 1), (0.7, 0), (0.2, 0), (0.2, -1), (-0.2, -1)])
+#: An arrow for each action, which points where the action leads.
+MARKERS = {
+    "forward": _UP,
+    "left": _UP.transformed(Affine2D().rotate_deg(90)),
+    "right": _UP.transformed(Affine2D().rotate_deg(-90)),
+}
+
+
+class PolicyPlot(NamedTuple):
+    """What `plot_policy` drew: the states' cells, and for each action its arrows."""
+
+    ax: Axes
+    cells: PolyCollection
+    marks: dict[str, Line2D]
+
+    def __repr__(self) -> str:
+        """Return what the picture states."""
+        return self.ax.get_title(loc="left") or f"{len(self.cells.get_paths())} states"
+
+
+def plot_policy(
+    centers: ArrayLike, actions: ArrayLike, ax: Axes | None = None, *, title: str = ""
+) -> PolicyPlot:
+    """Draw which action is taken in each state, in the robot's view.
+
+    Parameters
+    ----------
+    centers : array_like, shape (S, 2)
+        Centres of the states as scaled patterns (distance, orientation).
+    actions : array_like of int, shape (S,)
+        0 forward, 1 left, 2 right.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+    title : str
+        What the picture states.
+
+    Returns
+    -------
+    PolicyPlot
+        ``ax``, ``cells`` and ``marks``: an arrow a state, by action.
+
+    Raises
+    ------
+    ValueError
+        If there is not one action a state, or one that is not 0, 1 or 2.
+    """
+    polygons, _ = map_of(centers)
+    chosen = _checks.array("actions", actions, (len(polygons),))
+    if not np.isin(chosen, range(len(ACTIONS))).all():
+        raise ValueError(f"actions must be 0, 1 or 2, got {np.unique(chosen).tolist()}")
+    ax = style.view_axes(ax, title=title)
+    # The two last digits are the opacity: a quarter.
+    shades = [style.ACTIONS[ACTIONS[int(action)]] + "40" for action in chosen]
+    area = style.cells(polygons, shades, ax)
+    (left, right), (near, far) = ORIENTATION, DISTANCE
+    area.set_clip_path(Rectangle((left, near), right - left, far - near, transform=ax.transData))
+    places = in_view(centers)
+    marks = {}
+    for number, action in enumerate(ACTIONS):
+        (marks[action],) = ax.plot(
+            *places[chosen == number].T, linestyle="none", marker=MARKERS[action], markersize=8,
+            color=style.ACTIONS[action], markeredgecolor=style.INK, markeredgewidth=0.3,
+            label=action,
+        )  # fmt: skip
+    ax.legend(loc="upper center", ncols=3, frameon=False, borderaxespad=0.1)
+    return PolicyPlot(ax, area, marks)
+
+
+def figure_5_16(ax: Axes | None = None, *, agent: Arkaq | None = None) -> PolicyPlot:
+    """Draw figure 5.16, the greedy action of each state.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+    agent : Arkaq, optional
+        A trained agent; the course's own where it is None.
+
+    Returns
+    -------
+    PolicyPlot
+
+    Raises
+    ------
+    ValueError
+        If the agent has not learned yet.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> sorted(figure_5_16(Figure().subplots()).marks)
+    ['forward', 'left', 'right']
+    """
+    from ..experiments import load_agent  # brings the whole field with it
+
+    agent = load_agent() if agent is None else agent
+    if agent.q is None:
+        raise ValueError("agent must have learned, got one without values")
+    actions = agent.q.Q.argmax(axis=1)
+    parts = ", ".join(f"{(actions == i).sum()} {action}" for i, action in enumerate(ACTIONS))
+    printed = THESIS_COUNTS.get(agent.vigilance)
+    beside = "" if printed is None else f" (thesis {printed})"
+    title = f"{len(actions)} states{beside} at vigilance {agent.vigilance:g}: {parts}"
+    return plot_policy(agent.art.cluster_centers_, actions, ax, title=title)
