@@ -119,7 +119,10 @@ def train(vigilance: float, kalman: str, out: Path, seed: int) -> None:
 )
 @_seed
 def watch(agent: str | None, distance: float, orientation: float, out: Path, seed: int) -> None:
-    """Film a trained AGENT (default: the course's own) on its way to the ball."""
+    """Film a trained agent on its way to the ball.
+
+    AGENT is a file that `arkaq train` wrote; by default it is the course's own.
+    """
     from arkaq_edu.arkaq import Arkaq
     from arkaq_edu.experiments import load_agent, walk
     from arkaq_edu.figures.animation import save_walk

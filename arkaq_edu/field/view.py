@@ -114,7 +114,8 @@ def _draw_pitch(canvas: _Canvas) -> None:
     for x1, y1, x2, y2, height, colour in pitch.panels().tolist():
         if height == pitch.GOAL_HEIGHT:
             paint = tuple(int(c) for c in pitch.PALETTE[int(colour)])
-            canvas.line([(x1, y1), (x2, y2)], paint, 40)
+            out = math.copysign(20, y1) if y1 == y2 else 0.0
+            canvas.line([(x1, y1 + out), (x2, y2 + out)], paint, 40)
     for px, py, radius, _, colour in pitch.posts().tolist():
         canvas.disc(px, py, radius, tuple(int(c) for c in pitch.PALETTE[int(colour)]))
     border = [(-x, -y), (x, -y), (x, y), (-x, y), (-x, -y)]
