@@ -145,7 +145,7 @@ def watch(agent: str | None, distance: float, orientation: float, out: Path, see
 @click.option("--approaches", type=click.IntRange(1), default=500, show_default=True)
 @click.option("--jobs", type=int, default=-1, show_default=True, help="Processes; -1: all cores.")
 def reproduce(out: Path, seeds: int, approaches: int, jobs: int) -> None:
-    """Run the ball problem over many seeds and set it against the thesis.
+    """Repeat the experiments of the thesis, over many seeds.
 
     Writes index.html, which opens offline, and results.csv. The trained agents are kept: call it
     again after an interruption, and it goes on where it was.
