@@ -260,51 +260,87 @@ def settled(now, before):
 
 
 @kernel
+def coast(M, pushes, gate, Z, t, xs, x_priors, ys, nis):
+    """Filter on from row t with a gain that stays; return the first row that has no part in that.
+
+    It has none when something is missing, or when its NIS is beyond the gate.
+    """
+    n, m = xs.shape[1], Z.shape[1]
+    while t < Z.shape[0]:
+        for i in range(n):
+            total = pushes[min(t, pushes.shape[0] - 1), i]
+            for j in range(n):
+                total += M[A, i, j] * xs[t - 1, j]
+            x_priors[t, i] = total
+        whole = True
+        for i in range(m):
+            total = Z[t, i]
+            for j in range(n):
+                total -= M[H, i, j] * x_priors[t, j]
+            ys[t, i] = total
+            whole = whole and not math.isnan(total)
+        nis[t] = squared_norm(M, ys[t])
+        if not whole or nis[t] > gate:
+            return t
+        for i in range(n):
+            total = x_priors[t, i]
+            for j in range(m):
+                total += M[K, i, j] * ys[t, j]
+            xs[t, i] = total
+        t += 1
+    return t
+
+
+@kernel
 def track(M, Rs, pushes, gates, x, Z, xs, Ps, x_priors, P_priors, ys, Ss, Ks, nis, accepted):
     """Filter a whole track from x and P, keeping everything; return its log-likelihood.
 
     `Rs` has a row for each of Z, or none if R never changes; `pushes` a row for each, or one.
     Covariances do not depend on what is seen, only on whether it is: once P_prior has settled, it,
-    S, K and P stay as they are until something is missing or refused. That makes a long track
-    several times faster.
+    S, K and P stay as they are, and the filter coasts until something is missing or refused. That
+    makes a long track several times faster.
     """
     n, m = x.size, Z.shape[1]
     y = np.empty(m)
-    used, log_det, log_likelihood = 0, 0.0, 0.0
-    still, was_full = False, False
-    for t in range(Z.shape[0]):
+    log_likelihood = 0.0
+    full = False
+    t = 0
+    while t < Z.shape[0]:
         predict_mean(M, pushes[min(t, pushes.shape[0] - 1)], x)
+        predict_covariance(M, n)
         x_priors[t] = x
+        P_priors[t] = M[P, :n, :n]
+        if Rs.shape[0] > 0:
+            M[R, :m, :m] = Rs[t]
         whole = innovate(M, Z[t], x, y)
-        still = still and whole
-        if still:
-            P_priors[t] = P_priors[t - 1]
-        else:
-            predict_covariance(M, n)
-            P_priors[t] = M[P, :n, :n]
-            if Rs.shape[0] > 0:
-                M[R, :m, :m] = Rs[t]
-            used, log_det = gain(M, y, n)
+        used, log_det = gain(M, y, n)
         nis[t] = squared_norm(M, y) if used > 0 else math.nan
         accepted[t] = nis[t] <= gates[used]
         if accepted[t]:
             correct_mean(M, y, x)
+            correct_covariance(M, n, m)
             log_likelihood -= 0.5 * (log_det + nis[t])
-            if not still:
-                correct_covariance(M, n, m)
         else:
-            M[P, :n, :n] = P_priors[t]
             M[K] = 0.0
-        full = whole and accepted[t]
-        if full and was_full and not still and Rs.shape[0] == 0:
-            still = settled(P_priors[t], P_priors[t - 1])
-        still = still and full
-        was_full = full
         xs[t] = x
         Ps[t] = M[P, :n, :n]
-        Ks[t] = M[K, :n, :m]
         ys[t] = y
         Ss[t] = M[S, :m, :m]
+        Ks[t] = M[K, :n, :m]
+        was_full = full
+        full = whole and accepted[t]
+        t += 1
+        if full and was_full and Rs.shape[0] == 0 and settled(P_priors[t - 1], P_priors[t - 2]):
+            end = coast(M, pushes, gates[used], Z, t, xs, x_priors, ys, nis)
+            for s in range(t, end):
+                P_priors[s] = P_priors[t - 1]
+                Ps[s] = Ps[t - 1]
+                Ss[s] = Ss[t - 1]
+                Ks[s] = Ks[t - 1]
+                accepted[s] = True
+                log_likelihood -= 0.5 * (log_det + nis[s])
+            t = end
+            x[:] = xs[t - 1]
     return log_likelihood
 
 

@@ -170,6 +170,8 @@ class KalmanFilter:
     nis, log_likelihood, accepted : float, float and bool
         Of the last update: innovation' S^-1 innovation (NaN if nothing was seen), the log density
         of the sighting (0 if it was not used), and whether it was used.
+    gate : float or None
+        May be assigned.
     A, H, Q, B, x0, P0 : ndarray
         As given. Arrays read from the filter are read-only copies: later steps do not change
         them, and to change the filter one assigns, which is checked.
@@ -249,11 +251,7 @@ class KalmanFilter:
         self._B = np.zeros((n, 0)) if B is None else np.array(array("B", B, (n, None)))
         self._x0 = np.zeros(n) if x0 is None else np.array(array("x0", x0, (n,)))
         self._P0 = self._wide() if P0 is None else np.array(covariance("P0", P0, n), order="C")
-        self._gates = np.full(m + 1, np.inf)
         self.gate = gate
-        if gate is not None:
-            number("gate", gate, 0, 1, open_low=True, open_high=True)
-            self._gates[1:] = [chi_square_quantile(gate, seen) for seen in range(1, m + 1)]
         self.reset()
 
     x = _snapshot("x", "The estimate.", lambda self, value: array("x", value, self._x.shape))
@@ -274,6 +272,20 @@ class KalmanFilter:
     K = _snapshot("K", "The gain of the last update.")
     S = _snapshot("S", "The covariance of the last innovation.")
     innovation = _snapshot("innovation", "The last z - H x.")
+
+    @property
+    def gate(self) -> float | None:
+        """The probability with which a true sighting passes, or None: all do."""
+        return self._gate
+
+    @gate.setter
+    def gate(self, value: float | None) -> None:
+        self._gates = np.full(self._innovation.size + 1, np.inf)  # by the number of entries seen
+        self._gate = value
+        if value is not None:
+            self._gate = number("gate", value, 0, 1, open_low=True, open_high=True)
+            for seen in range(1, len(self._gates)):
+                self._gates[seen] = chi_square_quantile(self._gate, seen)
 
     def __repr__(self) -> str:
         sizes = f"{self._x.size} states, {self._innovation.size} measurements"
