@@ -280,7 +280,8 @@ class ART2(Categories):
 
     With fast learning and without noise (``theta=0``) a pattern just learned is matched perfectly.
     With noise, a template can gain a component that F1 by itself would have cut, and with slow
-    learning the norm of `z_J` still grows: then the next presentation may end elsewhere (often, at a high vigilance).
+    learning the norm of `z_J` still grows: then the next presentation may end elsewhere, and at a
+    high vigilance often does.
 
     The thesis defines this network and runs another (`EuclideanART`), so it gives no parameters.
 
