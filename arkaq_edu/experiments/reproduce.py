@@ -64,6 +64,10 @@ def results(
         Columns quantity, thesis (NaN where it prints none), mean, low and high (the 5th and 95th
         percentile over the seeds), seeds.
 
+    Notes
+    -----
+    Within ``joblib.parallel_config(backend="dask")`` the runs go to a Dask cluster.
+
     References
     ----------
     Thesis 5.1.3.1, 5.2; figures 5.5, 5.10-5.14, 5.16-5.30.
