@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import re
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -11,6 +12,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
 from matplotlib.path import Path as Polygon
+from PIL import Image
 from scipy import stats
 
 from arkaq_edu.arkaq import Q_LEARNING, SEGMENTATION, Arkaq
@@ -18,7 +20,7 @@ from arkaq_edu.experiments import STARTS, Walk, load_agent, walk
 from arkaq_edu.field import Camera, Legs, World
 from arkaq_edu.field.camera import FIELD_OF_VIEW
 from arkaq_edu.field.view import EXTENT
-from arkaq_edu.figures import FIGURES, automata, draw, field, policy, style, trajectories
+from arkaq_edu.figures import FIGURES, animation, automata, draw, field, policy, style, trajectories
 
 BALL_PROBLEM = ["5.3", "5.5", "5.6", "5.7", "5.8", *(f"5.{n}" for n in range(10, 31))]
 IN_VIEW = {17: 1, 18: 2, 19: 3, 20: 4, 21: 5, 22: 6, 24: 7, 25: 8, 26: 9, 28: 10, 30: 11}
@@ -295,3 +297,92 @@ def test_a_walk_that_fails_says_so(agent):
 def test_there_are_eleven_trajectories(number):
     with pytest.raises(ValueError, match=r"number must be"):
         trajectories.trajectory(number)
+
+
+# The moving picture
+
+
+@pytest.fixture(scope="module")
+def short_walk(agent):
+    """The end of a walk: a few looks, of which one shows nothing."""
+    way = walk(agent, *STARTS[0])
+    table = way.table.iloc[-4:].reset_index(drop=True)
+    table.loc[1, ["seen_distance", "seen_orientation"]] = np.nan
+    return Walk(table, way.is_success, way.reward)
+
+
+@pytest.mark.filterwarnings("ignore:Animation was deleted")
+def test_marks_on_the_field_are_where_the_ball_was_seen_and_believed(short_walk):
+    table = short_walk.table.assign(heading=lambda looks: looks.heading + 0.3)
+    moved = Walk(table, True, 100.0)
+    walking = animation.animate_walk(moved)
+    for number, look in table.iterrows():
+        walking._draw_frame(number)
+        ring, cross = walking._fig.axes[0].lines
+        for mark, kind in ((ring, "seen"), (cross, "estimated")):
+            x, y = mark.get_xdata()[0] - look.x, mark.get_ydata()[0] - look.y
+            ahead = x * np.cos(look.heading) + y * np.sin(look.heading)
+            left = y * np.cos(look.heading) - x * np.sin(look.heading)
+            place = look[f"{kind}_distance"], look[f"{kind}_orientation"]
+            assert [np.hypot(ahead, left), np.arctan2(left, ahead)] == pytest.approx(
+                place, nan_ok=True
+            )
+        assert ring.get_markerfacecolor() == "none", "a measurement is hollow"
+        assert animation.caption_at(moved, number) in [t.get_text() for t in walking._fig.texts]
+
+
+def test_a_caption_says_what_was_seen_believed_and_done(short_walk):
+    first, blind, _, last = (animation.caption_at(short_walk, look) for look in range(4))
+    look = short_walk.table.iloc[0]
+    assert f"seen {look.seen_distance:5,.0f} mm, {look.seen_orientation:+.2f} rad" in first
+    assert f"estimate {look.estimated_distance:5,.0f} mm" in first
+    action = ("forward", "left", "right")[int(look.action)]
+    assert f"cycle 0: state {look.category:.0f}, so {action}" in first
+    assert blind.startswith("nothing seen; estimate")
+    assert last.endswith(f"cycle 3: reached, +{short_walk.reward:g}")
+    lost = Walk(short_walk.table, False, 0.0)
+    assert animation.caption_at(lost, 3).endswith("the ball is lost")
+
+
+def frames_of(path):
+    with Image.open(path) as picture:
+        frames = []
+        for number in range(picture.n_frames):
+            picture.seek(number)
+            frames.append(np.asarray(picture.convert("RGB"), dtype=float))
+    return frames
+
+
+def test_a_walk_is_kept_as_a_small_gif_with_a_frame_a_look(short_walk, tmp_path):
+    animation.save_walk(short_walk, tmp_path / "walk.GIF")
+    frames = frames_of(tmp_path / "walk.GIF")
+    assert len(frames) == len(short_walk.table)
+    assert min(abs(b - a).max() for a, b in itertools.pairwise(frames)) > 50, "it moves"
+    assert (tmp_path / "walk.GIF").stat().st_size / len(frames) * 40 < 3e6
+
+
+def test_a_walk_is_kept_as_a_page_that_needs_no_network(short_walk, tmp_path):
+    pages = [tmp_path / name for name in ("one.html", "two.html")]
+    for page in pages:
+        animation.save_walk(short_walk, page)
+    text = pages[0].read_text()
+    assert text.count("data:image/png;base64") == len(short_walk.table)
+    assert "http" not in text and "<link" not in text
+    for icon in set(re.findall(r'class="fa fa-([a-z-]+)', text)):
+        assert f".fa-{icon}::before" in text, "every button has its sign"
+    assert pages[0].read_bytes() == pages[1].read_bytes()
+
+
+def test_a_walk_moves_in_a_notebook(short_walk, tmp_path):
+    moving = animation.MovingWalk(short_walk)
+    (tmp_path / "walk.png").write_bytes(moving._repr_png_())
+    assert len(frames_of(tmp_path / "walk.png")) == len(short_walk.table)
+    assert repr(moving) == trajectories.how_it_went(short_walk)
+
+
+@pytest.mark.parametrize("name", ["walk.mp4", "walk", "gif", ".html"])
+def test_other_endings_are_refused_before_anything_is_drawn(name, tmp_path, monkeypatch):
+    monkeypatch.setattr(animation, "animate_walk", lambda _: pytest.fail("drew"))
+    with pytest.raises(ValueError, match=r"path must end in \.gif or \.html, got"):
+        animation.save_walk(None, tmp_path / name)
+    assert not list(tmp_path.iterdir())

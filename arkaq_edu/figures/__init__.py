@@ -7,6 +7,12 @@ import lazy_loader as _lazy
 
 __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
-    submodules=["automata", "field", "gallery", "policy", "segmentation", "style", "trajectories"],
-    submod_attrs={"gallery": ["FIGURES", "draw"]},
-)
+    submodules=[
+        "animation", "automata", "field", "gallery", "policy", "segmentation", "style",
+        "trajectories",
+    ],
+    submod_attrs={
+        "animation": ["MovingWalk", "animate_walk", "save_walk"],
+        "gallery": ["FIGURES", "draw"],
+    },
+)  # fmt: skip
