@@ -46,6 +46,30 @@ def is_covariance(R):
     return True
 
 
+# Numba takes seconds to compile an assignment to a slice; these loops it compiles at once.
+@kernel
+def fill(M, plane, values):
+    """Put a matrix into a plane."""
+    for i in range(values.shape[0]):
+        for j in range(values.shape[1]):
+            M[plane, i, j] = values[i, j]
+
+
+@kernel
+def keep(M, plane, out):
+    """Copy a matrix out of its plane."""
+    for i in range(out.shape[0]):
+        for j in range(out.shape[1]):
+            out[i, j] = M[plane, i, j]
+
+
+@kernel
+def copy(values, out):
+    """Copy a vector."""
+    for i in range(out.size):
+        out[i] = values[i]
+
+
 @kernel
 def predict_mean(M, push, x):
     """Set x = A x + B u (eq 2.55), with push = B u."""
@@ -308,10 +332,10 @@ def track(M, Rs, pushes, gates, x, Z, xs, Ps, x_priors, P_priors, ys, Ss, Ks, ni
     while t < Z.shape[0]:
         predict_mean(M, pushes[min(t, pushes.shape[0] - 1)], x)
         predict_covariance(M, n)
-        x_priors[t] = x
-        P_priors[t] = M[P, :n, :n]
+        copy(x, x_priors[t])
+        keep(M, P, P_priors[t])
         if Rs.shape[0] > 0:
-            M[R, :m, :m] = Rs[t]
+            fill(M, R, Rs[t])
         whole = innovate(M, Z[t], x, y)
         used, log_det = gain(M, y, n)
         nis[t] = squared_norm(M, y) if used > 0 else math.nan
@@ -322,25 +346,25 @@ def track(M, Rs, pushes, gates, x, Z, xs, Ps, x_priors, P_priors, ys, Ss, Ks, ni
             log_likelihood -= 0.5 * (log_det + nis[t])
         else:
             M[K] = 0.0
-        xs[t] = x
-        Ps[t] = M[P, :n, :n]
-        ys[t] = y
-        Ss[t] = M[S, :m, :m]
-        Ks[t] = M[K, :n, :m]
+        copy(x, xs[t])
+        keep(M, P, Ps[t])
+        copy(y, ys[t])
+        keep(M, S, Ss[t])
+        keep(M, K, Ks[t])
         was_full = full
         full = whole and accepted[t]
         t += 1
         if full and was_full and Rs.shape[0] == 0 and settled(P_priors[t - 1], P_priors[t - 2]):
             end = coast(M, pushes, gates[used], Z, t, xs, x_priors, ys, nis)
             for s in range(t, end):
-                P_priors[s] = P_priors[t - 1]
-                Ps[s] = Ps[t - 1]
-                Ss[s] = Ss[t - 1]
-                Ks[s] = Ks[t - 1]
+                keep(P_priors, t - 1, P_priors[s])
+                keep(Ps, t - 1, Ps[s])
+                keep(Ss, t - 1, Ss[s])
+                keep(Ks, t - 1, Ks[s])
                 accepted[s] = True
                 log_likelihood -= 0.5 * (log_det + nis[s])
             t = end
-            x[:] = xs[t - 1]
+            copy(xs[t - 1], x)
     return log_likelihood
 
 
@@ -379,9 +403,10 @@ def smooth(M, xs, Ps, x_priors):
     n = xs.shape[1]
     y = np.zeros(n)
     for t in range(xs.shape[0] - 2, -1, -1):
-        M[P] = Ps[t]
+        fill(M, P, Ps[t])
         gain(M, y, n)
-        y[:] = xs[t + 1] - x_priors[t + 1]
+        for i in range(n):
+            y[i] = xs[t + 1, i] - x_priors[t + 1, i]
         correct_mean(M, y, xs[t])
         for i in range(n):
             for j in range(n):
@@ -389,19 +414,21 @@ def smooth(M, xs, Ps, x_priors):
                 for k in range(n):
                     total -= M[K, i, k] * M[H, k, j]
                 M[A, i, j] = total
-        M[Q] = 0.0
+                M[Q, i, j] = 0.0
         predict_covariance(M, n)
-        M[Q] = M[P]
-        M[A] = M[K]
-        M[P] = M[R] + Ps[t + 1]
+        fill(M, Q, M[P])
+        fill(M, A, M[K])
+        for i in range(n):
+            for j in range(n):
+                M[P, i, j] = M[R, i, j] + Ps[t + 1, i, j]
         predict_covariance(M, n)
-        Ps[t] = M[P]
+        keep(M, P, Ps[t])
 
 
 @kernel
 def squared_norms(M, errors, Ps, norms):
     """Set norms_t = e_t' P_t^-1 e_t."""
     for t in range(errors.shape[0]):
-        M[S] = Ps[t]
+        fill(M, S, Ps[t])
         factor(M, errors[t])
         norms[t] = squared_norm(M, errors[t])
