@@ -1,4 +1,4 @@
-"""The map of categories: its cells, its colours, and the figures drawn of it."""
+"""The map of categories: its cells, its colours, its measures, and the figures drawn of it."""
 
 import itertools
 
@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.path import Path as Polygon
 from stand_in import triangle_stream
 
-from arkaq_edu.figures import segmentation, style
+from arkaq_edu.figures import FIGURES as GALLERY
+from arkaq_edu.figures import distance, segmentation, style
 
 FIGURES = {
     0.15: segmentation.figure_5_10,
@@ -108,6 +109,79 @@ def test_a_figure_makes_its_own_axes_and_shows_nothing(monkeypatch):
     plt.close(plot.ax.figure)
     segmentation.figure_5_10(Figure().subplots())
     assert plt.get_fignums() == before
+
+
+@pytest.mark.parametrize("number", ["4.1", "4.2", "5.9"])
+def test_the_figures_of_both_methods_draw_where_they_are_told(number, monkeypatch):
+    monkeypatch.setattr(plt, "subplots", lambda *_, **__: pytest.fail("opened a window"))
+    ax = Figure(layout="constrained").subplots()
+    plot = GALLERY[number](ax)
+    assert plot.ax is ax and repr(plot) == ax.get_title(loc="left") != ""
+    ax.figure.canvas.draw()
+
+
+def angles(vectors):
+    return np.degrees(np.angle(np.asarray(vectors) @ [1, 1j]))
+
+
+def tips(arrows):
+    return np.column_stack([arrows.U, arrows.V])
+
+
+@pytest.mark.parametrize(("rate", "times"), [(0.3, 3), (0.1, 1), (1.0, 2)])
+def test_a_template_turns_towards_its_pattern_and_keeps_its_length(rate, times):
+    plot = distance.figure_4_1(Figure().subplots(), learning_rate=rate, times=times)
+    before, after = tips(plot.before), tips(plot.after)
+    w, x = before[0] @ [1, 1j], np.array(plot.patterns.get_xydata())[0] @ [1, 1j]
+    for _ in range(times):
+        w = (1 - rate) * w + rate * x / abs(x)
+        w /= abs(w)
+    assert after[0] @ [1, 1j] == pytest.approx(w)
+    assert after[1] == pytest.approx(before[1])
+    start, end, aim = np.rint(angles([before[0], after[0], [x.real, x.imag]])).astype(int)
+    assert repr(plot) == f"{times} times x1: w1 turns from {start}° to {end}°, x1 lies at {aim}°"
+    assert plot.patterns.get_markerfacecolor() == "none"
+
+
+def test_a_pattern_out_of_every_angle_founds_a_template():
+    plot = distance.figure_4_1(Figure().subplots(), vigilance=0.95)
+    assert len(tips(plot.before)) == 2 and len(tips(plot.after)) == 3
+    assert angles(tips(plot.after)[2:]) == pytest.approx(50)
+
+
+@pytest.mark.parametrize("eta", [0.25, 0.5, 1.0])
+def test_the_near_pattern_moves_a_centre_and_the_far_one_founds_one(eta):
+    plot = distance.figure_4_2(Figure().subplots(), learning_rate=eta)
+    old, new = plot.before.get_xydata(), plot.after.get_xydata()
+    x1, x2 = plot.patterns.get_xydata()
+    assert new[0] == pytest.approx((1 - eta) * old[0] + eta * x1)
+    assert new[1] == pytest.approx(old[1]) and new[2] == pytest.approx(x2)
+    for circle, centre in zip(plot.reach, old, strict=True):
+        inside = [np.hypot(*(x - circle.center)) < circle.get_radius() for x in (x1, x2)]
+        assert circle.center == pytest.approx(centre) and circle.get_radius() == 0.4
+        assert inside == [circle is plot.reach[0], False]
+
+
+@pytest.mark.parametrize("vigilance", [0.5, 0.8, 0.95])
+def test_a_sector_holds_the_patterns_most_aligned_with_its_template(vigilance):
+    patterns = triangle_stream(2000)
+    plot = segmentation.figure_5_9(Figure().subplots(), vigilance=vigilance, patterns=patterns)
+    way = np.array([arrow[1] - arrow[0] for arrow in plot.templates.get_segments()])
+    directions = way[:, ::-1] / [1950, 0.5]
+    assert np.linalg.norm(directions, axis=1) == pytest.approx(1)
+    points = scattered(500, seed=2)
+    own = (points @ directions.T).argmax(axis=1)
+    seen = np.column_stack([points[:, 1] / 2, 2150 + 1950 * points[:, 0]])
+    sectors = [Polygon(path.vertices) for path in plot.cells.get_paths()]
+    inside = np.array([sector.contains_points(seen) for sector in sectors])
+    assert plot.n_templates == len(sectors) == len(directions)
+    assert inside.sum(axis=0).tolist() == [1] * len(points)
+    assert inside.argmax(axis=0).tolist() == own.tolist()
+    assert repr(plot).startswith(f"{len(directions)} templates at cosine {vigilance:g}, an angle")
+    assert plot.example.get_xydata() == pytest.approx(np.array([[0.3, 2100.0]]))
+    mine = directions @ [(2100 - 2150) / 1950, 0.6]
+    tip = directions[mine.argmax()]
+    assert plot.chosen.get_xydata()[0] == pytest.approx([tip[1] / 2, 2150 + 1950 * tip[0]])
 
 
 def test_measurements_are_hollow_and_a_band_is_one_standard_deviation():

@@ -8,7 +8,7 @@ import lazy_loader as _lazy
 __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
     submodules=[
-        "animation", "automata", "field", "gallery", "policy", "segmentation", "style",
+        "animation", "automata", "distance", "field", "gallery", "policy", "segmentation", "style",
         "trajectories",
     ],
     submod_attrs={

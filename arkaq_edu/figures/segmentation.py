@@ -1,12 +1,13 @@
-"""Figures 5.10 to 5.14: how the ART network cuts the robot's view into categories.
+"""Figures 5.9 to 5.14: how an ART network cuts the robot's view into categories.
 
 A category is a centre; its cell is every ball position nearer to this centre than to any other.
 Near is meant between scaled patterns, where distance and orientation both run from -1 to 1; in
-the picture's own units the cells are the same polygons, stretched.
+the picture's own units the cells are the same polygons, stretched. The templates of the angular
+network have unit norm, so that the nearest is the most aligned: their cells are sectors.
 
 References
 ----------
-Thesis, section 5.2.1 and figures 5.10 to 5.14.
+Thesis, section 5.2.1 and figures 5.9 to 5.14.
 
 Examples
 --------
@@ -19,11 +20,12 @@ Examples
 
 from __future__ import annotations
 
+from math import acos, degrees
 from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from numpy.typing import ArrayLike, NDArray
@@ -31,7 +33,7 @@ from scipy.spatial import Voronoi
 
 from .. import _checks
 from ..arkaq import Learning, Sensing
-from ..art import EuclideanART
+from ..art import ART2A, EuclideanART
 from . import style
 
 #: The numbers of centres the thesis prints, by vigilance (figures 5.10 to 5.14).
@@ -39,6 +41,10 @@ THESIS_COUNTS = {0.15: 137, 0.1: 333, 0.075: 519, 0.05: 825, 0.025: 1933}
 
 #: The update factor eta with which the agent learns.
 LEARNING_RATE = Learning().learning_rate
+
+#: The update factor with which the templates of figure 5.9 turn. Slow, as the authors of ART 2-A
+#: advise: a template that swings leaves directions behind it, where others are founded.
+ANGULAR_RATE = 0.1
 
 #: What the scaled interval from -1 to 1 stands for.
 SENSING = Sensing.thesis()
@@ -241,6 +247,75 @@ def plot_centers(centers: ArrayLike, ax: Axes | None = None, *, title: str = "")
     size = 2 * style.dot_radius(len(polygons))
     (dots,) = ax.plot(across, up, "o", color=style.INK, markersize=size, markeredgewidth=0)
     return CentersPlot(ax, area, dots, len(polygons))
+
+
+class TemplatesPlot(NamedTuple):
+    """What `figure_5_9` drew: each template's sector, its arrow from the middle, an example."""
+
+    ax: Axes
+    cells: PolyCollection
+    templates: LineCollection
+    example: Line2D
+    chosen: Line2D
+    n_templates: int
+
+    def __repr__(self) -> str:
+        """Return what the picture states."""
+        return self.ax.get_title(loc="left")
+
+
+def figure_5_9(
+    ax: Axes | None = None,
+    *,
+    vigilance: float = 0.95,
+    patterns: ArrayLike | None = None,
+    learning_rate: float = ANGULAR_RATE,
+) -> TemplatesPlot:
+    """Draw figure 5.9, the templates of the angular network and the sectors they stand for.
+
+    The hollow mark is the thesis's example, a ball at 2100 mm and 0.3 rad; the template that it
+    belongs to is ringed.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+    vigilance : float in [-1, 1)
+        Cosine above which a pattern belongs to a template.
+    patterns : array_like, shape (n, 2), optional
+        Scaled patterns in their order; the recorded stream where it is None.
+    learning_rate : float in (0, 1]
+        As for `arkaq_edu.art.ART2A`.
+
+    Returns
+    -------
+    TemplatesPlot
+        ``ax``, ``cells``, ``templates`` (segments from the middle of the view), ``example``,
+        ``chosen`` and ``n_templates``.
+
+    References
+    ----------
+    Thesis, sections 4.2.1 and 5.2.1, figure 5.9.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> figure_5_9(Figure().subplots(), patterns=[[1, 0], [0, 1], [0.5, 0.1], [-1, -1]])
+    3 templates at cosine 0.95, an angle of 18.2°
+    """
+    patterns = recorded_patterns() if patterns is None else patterns
+    art = ART2A(vigilance, learning_rate).fit(patterns)
+    templates = art.cluster_centers_
+    title = f"{len(templates)} templates at cosine {vigilance:g}, an angle of "
+    base = plot_centers(templates, ax, title=f"{title}{degrees(acos(vigilance)):.1f}°")
+    middle, tips = in_view([0.0, 0.0]), in_view(templates)
+    arrows = LineCollection([[middle, tip] for tip in tips], colors=style.INK, linewidths=1)
+    base.ax.add_collection(arrows, autolim=False)
+    ball = 2100.0, 0.3
+    example = style.measurements(ball[1:], ball[:1], base.ax, marker="x")
+    own = tips[[art.category(SENSING.scale(ball))]]
+    chosen = style.measurements(own[:, 0], own[:, 1], base.ax, color=style.OURS, markersize=12)
+    return TemplatesPlot(base.ax, base.cells, arrows, example, chosen, len(templates))
 
 
 def figure_5_10(ax: Axes | None = None, **options: Any) -> CentersPlot:
