@@ -5,6 +5,15 @@ pleased about; where the answer is not right it raises `ExerciseError` with a li
 """
 
 from ._ask import ExerciseError
+from .kalman import check_combine, check_nis, check_turn
 from .segmentation import check_nearest, check_present, check_scale
 
-__all__ = ["ExerciseError", "check_nearest", "check_present", "check_scale"]
+__all__ = [
+    "ExerciseError",
+    "check_combine",
+    "check_nearest",
+    "check_nis",
+    "check_present",
+    "check_scale",
+    "check_turn",
+]

@@ -5,6 +5,7 @@ and one canvas that draws any scene.
 """
 
 from .explorer import CanvasView, Explorer
+from .kalman import kalman_explorer
 from .vigilance import vigilance_explorer
 
-__all__ = ["CanvasView", "Explorer", "vigilance_explorer"]
+__all__ = ["CanvasView", "Explorer", "kalman_explorer", "vigilance_explorer"]

@@ -1,0 +1,236 @@
+"""The Kalman explorer: move what a filter believes of the noise, watch its estimate and its NIS."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, NamedTuple
+
+import ipywidgets
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from .. import _checks
+from ..figures import style
+from ..figures.kalman import running_nis
+from ..kalman import KalmanFilter, KalmanTrace
+from .explorer import Explorer
+from .scene import Cells, Layer, Line, Panel, Points, Scene, Text
+
+START, STEP = 3400.0, -100.0  # where the ball is at first, and what a footstep does to it: mm
+#: Standard deviations of the simulated world, in mm: its start, a footstep, a sighting.
+START_NOISE, STEP_NOISE, SIGHTING_NOISE = 100.0, 25.0, 100.0
+
+_ONE_SIGMA = "#e2cbdc"  # style.OURS in a quarter of its strength on white, as in `style.band`
+_RIGHT = "#e3e3e3"
+_CYCLES, _DISTANCES = (-1.0, 60.0), (0.0, 4500.0)
+_NIS = (0.05, 500.0)
+
+
+class Walk(NamedTuple):
+    """A walk to the ball of which everything is known: mm, one row a footstep cycle.
+
+    `lots` are numbers in [0, 1): a sighting is missing where its lot is below the dropout.
+    """
+
+    truth: NDArray[np.float64]
+    Z: NDArray[np.float64]
+    U: NDArray[np.float64]
+    lots: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Band(Cells):
+    """The area between two lines, in one shade."""
+
+    shade: str
+
+    def look(self) -> dict[str, Any]:
+        """Return all but the numbers."""
+        return super().look() | {"palette": [self.shade]}
+
+    def paint(self, ax: Axes) -> None:
+        """Draw with matplotlib."""
+        for polygon in self.polygons:
+            ax.fill(*np.transpose(polygon), color=self.shade, linewidth=0)
+
+
+def simulated_walk(rng: np.random.Generator | int | None = 0) -> Walk:
+    """Return a walk of 60 cycles: to the ball, a rest, on to the ball, a rest.
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator or int
+        Where the noise comes from; the explorer's walk is that of 0.
+
+    Returns
+    -------
+    Walk
+        ``truth`` (60,), ``Z`` (60, 1), ``U`` (60, 1) with 1 for a footstep, ``lots`` (60,).
+
+    References
+    ----------
+    Thesis, equations 2.49 to 2.52, with A = H = 1.
+
+    Examples
+    --------
+    >>> walk = simulated_walk()
+    >>> len(walk.truth), int(walk.U.sum())
+    (60, 30)
+    """
+    rng = np.random.default_rng(rng)
+    U = np.repeat([1.0, 0.0, 1.0, 0.0], 15)
+    start = START + START_NOISE * rng.standard_normal()
+    truth = start + np.cumsum(STEP * U + STEP_NOISE * rng.standard_normal(len(U)))
+    Z = truth + SIGHTING_NOISE * rng.standard_normal(len(U))
+    return Walk(truth, Z[:, np.newaxis], U[:, np.newaxis], rng.random(len(U)))
+
+
+def walk_filter(r: float, q: float) -> KalmanFilter:
+    """Return a filter for the simulated walk that believes in these standard deviations.
+
+    Parameters
+    ----------
+    r, q : float
+        Of a sighting and of a footstep, in mm, 0 or more; the filter's R is r**2, its Q q**2.
+
+    Returns
+    -------
+    KalmanFilter
+        It knows the footsteps, ``B``, and how well the start is known.
+
+    Raises
+    ------
+    ValueError
+        If `r` or `q` is negative.
+
+    Examples
+    --------
+    >>> walk_filter(r=100.0, q=25.0).R
+    array([[10000.]])
+    """
+    r, q = _checks.number("r", r, 0), _checks.number("q", q, 0)
+    return KalmanFilter(
+        [[1]], [[1]], [[q**2]], [[r**2]], [[STEP]], x0=[START], P0=[[START_NOISE**2]]
+    )
+
+
+def kalman_explorer() -> Explorer:
+    """Return sliders for R, Q and dropout above a track, its estimate and its NIS.
+
+    The noise is the same at every position of the sliders: what changes is the filter.
+
+    Returns
+    -------
+    Explorer
+        Its sliders are ``controls["r"]`` and ``controls["q"]``, the standard deviations in mm
+        that the filter believes in, and ``controls["dropout"]``, the share of sightings missing.
+
+    References
+    ----------
+    Thesis, section 2.5; the R at which it starts is that of section 5.2.
+
+    Examples
+    --------
+    >>> explorer = kalman_explorer()
+    >>> explorer
+    mean NIS 25.15 where 0.67 to 1.39 is right; estimate 90 mm off, sightings 102 mm
+    >>> explorer.controls["r"].value = 100.0
+    >>> explorer
+    mean NIS 1.10 where 0.67 to 1.39 is right; estimate 60 mm off, sightings 102 mm
+    """
+    wide: dict[str, Any] = {
+        "layout": {"width": "min(100%, 36em)"}, "style": {"description_width": "9em"},
+    }  # fmt: skip
+    powers: dict[str, Any] = {"base": 10, "step": 0.05, "readout_format": ".0f"} | wide
+    return Explorer(
+        partial(draw, simulated_walk()),
+        r=ipywidgets.FloatLogSlider(10.0, min=1, max=3, description="sigma of R (mm)", **powers),
+        q=ipywidgets.FloatLogSlider(25.0, min=0, max=2.5, description="sigma of Q (mm)", **powers),
+        dropout=ipywidgets.FloatSlider(
+            0.0, min=0, max=0.9, step=0.1, readout_format=".0%", description="dropout", **wide
+        ),
+    )
+
+
+def draw(walk: Walk, r: float, q: float, dropout: float) -> Scene:
+    """Return the picture for what a filter believes: the track on the left, its NIS on the right.
+
+    Parameters
+    ----------
+    walk : Walk
+        Truth, sightings and footsteps.
+    r, q : float
+        Standard deviations in mm that the filter believes in, of a sighting and of a footstep.
+    dropout : float
+        Share of the sightings that are missing, 0 to 1; a greater share misses the same and more.
+
+    Returns
+    -------
+    Scene
+    """
+    dropout = round(dropout, 3)  # a slider's steps add up to 0.30000000000000004
+    Z = np.where(walk.lots[:, np.newaxis] < dropout, np.nan, walk.Z)
+    trace = walk_filter(r, q).filter(Z, walk.U)
+    mean, low, high = trace.nis_band()
+    ours, theirs = _rms(trace.x[:, 0] - walk.truth), _rms(Z[:, 0] - walk.truth)
+    fact = (
+        f"mean NIS {mean:.2f} where {low:.2f} to {high:.2f} is right; "
+        f"estimate {ours:.0f} mm off, sightings {theirs:.0f} mm"
+    )
+    told = f"R = ({r:.0f} mm)², Q = ({q:.0f} mm)², {np.isnan(Z).sum()} of {len(Z)} missing"
+    return Scene(fact, [_track(walk, Z, trace, told), _nis(trace)])
+
+
+def _rms(errors: NDArray[np.float64]) -> float:
+    return float(np.sqrt(np.nanmean(errors**2)))
+
+
+def _track(walk: Walk, Z: NDArray[np.float64], trace: KalmanTrace, told: str) -> Panel:
+    k = np.arange(len(Z), dtype=float)
+    x, sigma = trace.x[:, 0], np.sqrt(trace.P[:, 0, 0])
+    seen = trace.accepted
+    layers: list[Layer] = [
+        _between(k, x - sigma, x + sigma, (*_CYCLES, *_DISTANCES), _ONE_SIGMA),
+        Line(k, walk.truth, style.INK, 1.3),
+        Line(k, x, style.OURS, 2.0),
+        Points(k[seen], Z[seen, 0], 3.0, hollow=True),
+        Text(0.3, 4350, told),
+        Line([31.0, 34.0], [3950, 3950], style.INK, 1.3),
+        Text(35.5, 3950, "truth"),
+        Points([32.5], [3700], 3.0, hollow=True),
+        Text(35.5, 3700, "sighting"),
+        Line([31.0, 34.0], [3450, 3450], style.OURS, 2.0),
+        Text(35.5, 3450, "estimate ± 1 sigma", style.OURS),
+    ]
+    return Panel("footstep cycle", "ball distance (mm)", _CYCLES, _DISTANCES, layers, width=1.45)
+
+
+def _nis(trace: KalmanTrace) -> Panel:
+    n, mean, low, high = running_nis(trace)
+    ends = (1.0, 66.0)
+    layers: list[Layer] = [
+        _between(n, np.clip(low, *_NIS), high, (*ends, *_NIS), _RIGHT),
+        Line(ends, [1, 1], style.QUIET, 1.0, dashed=True),
+        Line(n, np.clip(mean, *_NIS), style.OURS, 2.0),
+        Points(n[-1:], np.clip(mean[-1:], *_NIS), 4.0, style.OURS),
+        Text(1.15, 330, "too sure of itself", style.QUIET),
+        Text(11.0, 0.075, "too modest", style.QUIET),
+        Text(1.15, 0.32, "95 % of right filters", style.QUIET),
+    ]
+    return Panel(
+        "sightings so far", "mean NIS", ends, _NIS, layers, log=True,
+        xticks=[1, 3, 10, 30, 60], yticks=[0.1, 1, 10, 100],
+    )  # fmt: skip
+
+
+def _between(
+    x: NDArray[Any],
+    low: NDArray[np.float64],
+    high: NDArray[np.float64],
+    within: tuple[float, float, float, float],
+    shade: str,
+) -> Band:
+    outline = np.column_stack([np.append(x, x[::-1]), np.append(high, low[::-1])])
+    return Band([outline], [0], within, shade)
