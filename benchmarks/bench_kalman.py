@@ -79,26 +79,25 @@ def fast_kalman_filter():
     return peer
 
 
-def stepped(step_of: Callable, make: Callable, Z: np.ndarray) -> Run:
-    """Return a run that makes a filter and steps it through Z from Python."""
+def stepped(kf, Z: np.ndarray) -> Run:
+    """Return a run that takes a filter through Z from Python, as filterpy and we do it."""
 
     def run() -> None:
-        step = step_of(make())
         for z in Z:
-            step(z)
+            kf.predict()
+            kf.update(z)
 
     return run
 
 
-def predict_and_update(kf):
-    """Return the step that filterpy and we take: two calls."""
-    predict, update = kf.predict, kf.update
+def updated(peer, Z: np.ndarray) -> Run:
+    """Return a run of a filter whose update predicts first."""
 
-    def step(z):
-        predict()
-        update(z)
+    def run() -> None:
+        for z in Z:
+            peer.update(z)
 
-    return step
+    return run
 
 
 def main() -> None:
@@ -119,11 +118,10 @@ def main() -> None:
 
     stepping, track, batch = {}, {}, {}
     if has["filterpy"]:
-        run = stepped(predict_and_update, filterpy_filter, short)
-        stepping["filterpy"] = len(short), run
+        stepping["filterpy"] = len(short), stepped(filterpy_filter(), short)
         track["filterpy, 500 rows"] = len(short), lambda: filterpy_filter().batch_filter(short)
     if has["fast"]:
-        run = stepped(lambda peer: peer.update, fast_kalman_filter, short)
+        run = updated(fast_kalman_filter(), short)
         stepping["fast-kalman (C++), predict and update in one call"] = len(short), run
         run = lambda: fast_kalman_filter().update_many(long)  # noqa: E731
         track["fast-kalman (C++), keeps the last state only"] = len(long), run
@@ -135,7 +133,7 @@ def main() -> None:
         run = lambda: peer.compute(many, 0, filtered=True, smoothed=False, **start_at)  # noqa: E731
         batch["simdkalman"] = many[..., 0].size, run
 
-    ours = stepped(predict_and_update, lambda: KalmanFilter(A, H, Q, R, P0=P0), short)
+    ours = stepped(kf, short)
     compare("predict and update called from Python", len(short), ours, stepping, rounds=41)
     compare("a track of 100,000 rows, all kept", len(long), lambda: kf.filter(long), track, 9)
     gaps = long.copy()

@@ -67,7 +67,7 @@ class KalmanTrace:
 
         If A, H, Q and R are right, innovations are independent and their NIS sum to a chi-square
         variable. A mean above the band says that the filter is too sure of itself (Q or R too
-        small), a mean below it that it is too modest.
+        small), a mean below it that it is too modest. A gate keeps the largest NIS out of the mean.
 
         Parameters
         ----------
@@ -105,6 +105,15 @@ class KalmanTrace:
             return np.nan, np.nan, np.nan
         low, high = chi_square_band(entries / rows, rows, probability)
         return float(self.nis[self.accepted].mean()), low, high
+
+
+def _numbers(value: ArrayLike) -> Array:
+    """Return `value` as the one kind of array that kernels are compiled for, or an empty one."""
+    try:
+        numbers = np.asarray(value, np.float64)
+    except (TypeError, ValueError):
+        return np.empty(0)
+    return numbers if numbers.flags.carray else numbers.copy()
 
 
 def _snapshot(
@@ -357,17 +366,13 @@ class KalmanFilter:
         array([1.])
         """
         if R is not None:
-            usual, self.R = self.R, R
+            own = self._own("R")
+            usual, own[:] = own.copy(), self._noise(R)
             try:
                 return self.update(z)
             finally:
-                self._own("R")[:] = usual
-        try:
-            sighting = np.asarray(z, np.float64)
-            if not sighting.flags.carray:  # a kernel compiles anew for each kind of array
-                sighting = sighting.copy()
-        except (TypeError, ValueError):
-            sighting = np.empty(0)
+                own[:] = usual
+        sighting = _numbers(z)
         scores = _NOT_A_SIGHTING
         if sighting.shape == self._z_shape:
             scores = _kernels.update(self._memory, self._gates, sighting, self._x, self._innovation)
@@ -491,10 +496,11 @@ class KalmanFilter:
         return 1e6 * float(variances.max(initial=1.0)) * np.eye(self._x.size)
 
     def _noise(self, R: ArrayLike) -> Array:
-        """Return R as a covariance of its own, by a quick look where that is enough."""
+        """Return R as a covariance, checked by a quick look where that is enough."""
         m = self._innovation.size
-        own = np.array(array("R", R, (m, m)), order="C")
-        return own if _kernels.is_covariance(own) else covariance("R", own, m)
+        own = _numbers(R)
+        quick = own.shape == (m, m) and _kernels.is_covariance(own)
+        return own if quick else covariance("R", R, m)
 
     def _pushes(self, name: str, u: ArrayLike, rows: tuple[int, ...]) -> Array:
         """Return B u for each row of u."""
