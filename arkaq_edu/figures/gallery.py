@@ -14,9 +14,9 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from . import automata, distance, field, policy, segmentation, trajectories
+from . import art, automata, distance, field, policy, segmentation, trajectories
 
-_ROOMS = (distance, field, automata, segmentation, policy, trajectories)
+_ROOMS = (art, distance, field, automata, segmentation, policy, trajectories)
 
 
 def _number(name: str) -> tuple[int, ...]:
@@ -67,7 +67,7 @@ def draw(number: str, path: str | os.PathLike[str] | None = None, **options: Any
     segmentation: 5 states and 9 transitions, from the table that the agent runs
     >>> draw("9.9")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
-    ValueError: number must be one of 4.1, 4.2, ...
+    ValueError: number must be one of ...
     """
     if number not in FIGURES:
         raise ValueError(f"number must be one of {', '.join(FIGURES)}, got {number!r}")

@@ -1,0 +1,582 @@
+"""Figures 2.18 to 2.21: the networks of adaptive resonance, and pictures of them at work.
+
+References
+----------
+Thesis, section 2.4.
+G. A. Carpenter, S. Grossberg, ART 2: self-organization of stable category recognition codes for
+analog input patterns, Applied Optics 26 (1987) 4919-4930, where figures 2.20 and 2.21 come from.
+
+Examples
+--------
+>>> from matplotlib.figure import Figure
+>>> figure_2_21(Figure().subplots())
+once learned, vigilance 0.95 resets a cosine below 0.76 (c = 0.1, d = 0.9)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PatchCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, FancyArrowPatch, FancyBboxPatch, Rectangle
+from matplotlib.path import Path
+from matplotlib.text import Text
+from numpy.typing import ArrayLike, NDArray
+
+from .. import _checks
+from ..art import match_norm
+from . import style
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Place = tuple[float, float]
+
+#: Letters of five by five points, row by row from the top.
+LETTERS = {
+    name: np.array([int(point) for point in rows.replace(" ", "")])
+    for name, rows in {
+        "L": "10000 10000 10000 10000 11111",
+        "T": "11111 00100 00100 00100 00100",
+        "F": "11111 10000 11110 10000 10000",
+        "E": "11111 10000 11110 10000 11111",
+        "I": "00100 00100 00100 00100 00100",
+        "H": "10001 10001 11111 10001 10001",
+        "P": "11110 10001 11110 10000 10000",
+        "U": "10001 10001 10001 10001 01110",
+    }.items()
+}
+
+#: Cosines between `u` and the expectation for which figure 2.21 draws a curve.
+COSINES = (1.0, 0.8, 0.6, 0.4, 0.2, 0.0)
+
+
+class Diagram(NamedTuple):
+    """What a diagram is made of: its parts, and its wires by (from, to)."""
+
+    ax: Axes
+    parts: dict[str, Text]
+    wires: dict[tuple[str, str], FancyArrowPatch]
+
+    def __repr__(self) -> str:
+        """Return what the picture states."""
+        return self.ax.get_title(loc="left")
+
+
+class ResetPlot(NamedTuple):
+    """What `figure_2_21` drew: a curve for each cosine, and the vigilance."""
+
+    ax: Axes
+    curves: dict[float, Line2D]
+    vigilance: Line2D
+
+    def __repr__(self) -> str:
+        """Return what the picture states."""
+        return self.ax.get_title(loc="left")
+
+
+class GridsPlot(NamedTuple):
+    """What `plot_letters` or `plot_search` drew: for each grid, its filled points, and words."""
+
+    ax: Axes
+    grids: list[NDArray[np.bool_]]
+    words: list[Text]
+
+    def __repr__(self) -> str:
+        """Return what the picture states."""
+        return self.ax.get_title(loc="left") or f"{len(self.grids)} grids"
+
+
+class SettlingPlot(NamedTuple):
+    """What `plot_settling` drew: a line for each feature."""
+
+    ax: Axes
+    lines: list[Line2D]
+
+    def __repr__(self) -> str:
+        """Return what the picture states."""
+        return self.ax.get_title(loc="left")
+
+
+# Diagrams
+
+
+def figure_2_18(ax: Axes | None = None) -> Diagram:
+    """Draw figure 2.18, the two layers of an ART network and the traces between them."""
+    ax = _blank(
+        ax,
+        "ART: every node of F1 is joined with every node of F2, both ways",
+        (-5.2, 5.5),
+        (-1.8, 3.0),
+    )
+    features = [(x, 0.0) for x in np.linspace(-2.2, 2.2, 5).tolist()]
+    categories = [(x, 2.4) for x in np.linspace(-1.8, 1.8, 3).tolist()]
+    for x, y in features:
+        for to_x, to_y in categories:
+            ax.plot([x, to_x], [y, to_y], color="#cccccc", linewidth=0.8, zorder=0)
+    for height in (0.0, 2.4):
+        _box(ax, (0.0, height), width=6.0, height=0.8)
+    for place in features + categories:
+        ax.add_patch(Circle(place, 0.24, facecolor="white", edgecolor=style.INK))
+    parts = {
+        "F1": _words(ax, (3.15, 0.0), "F1: features\n(short-term memory)", "left"),
+        "F2": _words(ax, (3.15, 2.4), "F2: categories\n(short-term memory)", "left"),
+        "up": _words(ax, (-2.85, 1.2), "bottom-up traces $z_{ij}$\nwhich category?", "right"),
+        "down": _words(ax, (2.85, 1.2), "top-down traces $z_{ji}$\nwhat does it expect?", "left"),
+        "I": _words(ax, (0.0, -1.5), "input pattern $I$"),
+    }
+    wires = {
+        ("F1", "F2"): _wire(ax, (-2.7, 0.4), (-2.7, 2.0)),
+        ("F2", "F1"): _wire(ax, (2.7, 2.0), (2.7, 0.4)),
+    }
+    wires |= {
+        ("I", f"F1 {i}"): _wire(ax, (x, -1.2), (x, -0.4)) for i, (x, _) in enumerate(features)
+    }
+    return Diagram(ax, parts, wires)
+
+
+def figure_2_19(ax: Axes | None = None) -> Diagram:
+    """Draw figure 2.19, ART1: two gains, the attentional and the orienting subsystem."""
+    ax = _blank(ax, "ART1: attention matches, orientation resets", (-0.6, 10.0), (-0.1, 6.8))
+    _frame(ax, (-0.3, 1.5), 6.0, 5.1)
+    _frame(ax, (6.1, 1.5), 3.2, 2.4)
+    parts = {
+        "attentional": _words(ax, (2.7, 6.25), "attentional subsystem", color=style.QUIET),
+        "orienting": _words(ax, (7.7, 3.5), "orienting subsystem", color=style.QUIET),
+        "F2": _box(ax, (4.0, 5.2), "F2 (STM)", width=2.2),
+        "F1": _box(ax, (4.0, 2.4), "F1 (STM)", width=2.2),
+        "gain 2": _box(ax, (1.2, 5.2), "gain 2"),
+        "gain 1": _box(ax, (1.2, 2.4), "gain 1"),
+        "A": _box(ax, (7.9, 2.4), r"match $<\rho$ ?", width=2.0),
+        "I": _box(ax, (4.0, 0.4), "input $I$", width=1.5),
+        "LTM up": _words(ax, (3.55, 3.8), "LTM", "right"),
+        "LTM down": _words(ax, (4.65, 3.8), "LTM", "left"),
+        "reset": _words(ax, (7.4, 5.2), "reset"),
+    }
+    wires = {
+        ("F1", "F2"): _wire(ax, (3.7, 2.75), (3.7, 4.85)),
+        ("F2", "F1"): _wire(ax, (4.5, 4.85), (4.5, 2.75)),
+        ("gain 2", "F2"): _wire(ax, (1.75, 5.2), (2.9, 5.2), sign="+"),
+        ("gain 1", "F1"): _wire(ax, (1.75, 2.4), (2.9, 2.4), sign="+"),
+        ("F2", "gain 1"): _wire(ax, (3.1, 4.85), (1.2, 2.75), sign="−"),
+        ("I", "F1"): _wire(ax, (4.0, 0.75), (4.0, 2.05), sign="+"),
+        ("I", "gain 1"): _wire(ax, (1.2, 0.4), (1.2, 2.05), sign="+"),
+        ("I", "gain 2"): _wire(ax, (3.25, 0.4), (0.1, 0.4), (0.1, 5.2), (0.65, 5.2), sign="+"),
+        ("I", "A"): _wire(ax, (4.75, 0.4), (7.9, 0.4), (7.9, 2.05), sign="+"),
+        ("F1", "A"): _wire(ax, (5.1, 2.4), (6.9, 2.4), sign="−"),
+        ("A", "F2"): _wire(ax, (8.9, 2.4), (9.7, 2.4), (9.7, 5.2), (5.1, 5.2)),
+    }
+    return Diagram(ax, parts, wires)
+
+
+def figure_2_20(ax: Axes | None = None) -> Diagram:
+    """Draw figure 2.20, ART2: the loops of F1 between the input and F2, and the reset."""
+    ax = _blank(ax, "ART2: the loops of F1; black dots divide by norms", (-5.2, 3.8), (-1.6, 6.1))
+    places = {
+        "w": (0.0, 0.0), "x": (2.6, 0.0), "u": (0.0, 1.8), "v": (2.6, 1.8), "p": (0.0, 3.6),
+        "q": (2.6, 3.6), "r": (-2.6, 2.7),
+    }  # fmt: skip
+    parts = {name: _node(ax, place, f"${name}_i$") for name, place in places.items()}
+    parts |= {
+        "y": _box(ax, (1.3, 5.6), "F2: node $y_J$", width=3.6),
+        "I": _words(ax, (0.0, -1.35), "$I_i$"),
+        "au": _words(ax, (-0.15, 0.9), "$a u_i$", "right"),
+        "fx": _words(ax, (2.75, 0.9), "$f(x_i)$", "left"),
+        "fq": _words(ax, (2.75, 2.7), "$b f(q_i)$", "left"),
+        "up": _words(ax, (-0.25, 4.6), "$z_{ij}$", "right"),
+        "down": _words(ax, (0.25, 4.6), "$d z_{Ji}$", "left"),
+        "cp": _words(ax, (-1.15, 3.5), "$c p_i$", "right"),
+        "reset": _words(ax, (-2.75, 4.3), r"reset if $\|r\| < \rho$", "right"),
+    }
+    wires = {
+        ("I", "w"): _wire(ax, (0.0, -1.1), (0.0, -0.34)),
+        ("w", "x"): _wire(ax, (0.34, 0.0), (2.26, 0.0), norm=True),
+        ("x", "v"): _wire(ax, (2.6, 0.34), (2.6, 1.46)),
+        ("v", "u"): _wire(ax, (2.26, 1.8), (0.34, 1.8), norm=True),
+        ("u", "w"): _wire(ax, (0.0, 1.46), (0.0, 0.34)),
+        ("u", "p"): _wire(ax, (0.0, 2.14), (0.0, 3.26)),
+        ("p", "q"): _wire(ax, (0.34, 3.6), (2.26, 3.6), norm=True),
+        ("q", "v"): _wire(ax, (2.6, 3.26), (2.6, 2.14)),
+        ("p", "y"): _wire(ax, (-0.12, 3.92), (-0.12, 5.25)),
+        ("y", "p"): _wire(ax, (0.12, 5.25), (0.12, 3.92)),
+        ("u", "r"): _wire(ax, (-0.32, 1.91), (-2.28, 2.59), norm=True),
+        ("p", "r"): _wire(ax, (-0.32, 3.49), (-2.28, 2.81), norm=True),
+        ("r", "y"): _wire(ax, (-2.6, 3.04), (-2.6, 5.6), (-0.5, 5.6)),
+    }
+    return Diagram(ax, parts, wires)
+
+
+def _blank(ax: Axes | None, title: str, xlim: Place, ylim: Place, inch: float = 0.75) -> Axes:
+    """Return axes of equal units without a frame; on a new page if `ax` is None."""
+    if ax is None:
+        size = inch * (xlim[1] - xlim[0]), inch * (ylim[1] - ylim[0]) + 0.3
+        _, ax = plt.subplots(figsize=size, layout="constrained")
+    style.axes(ax, title=title)
+    ax.axis("off")
+    ax.set(aspect="equal", xlim=xlim, ylim=ylim)
+    return ax
+
+
+def _words(
+    ax: Axes, place: Place, words: str, side: str = "center", color: str = style.INK
+) -> Text:
+    white = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
+    return ax.text(*place, words, ha=side, va="center", fontsize=9, color=color, bbox=white)
+
+
+def _box(
+    ax: Axes, place: Place, words: str = "", *, width: float = 1.1, height: float = 0.7
+) -> Text:
+    x, y = place
+    round_ = "round,pad=0,rounding_size=0.15"
+    box = FancyBboxPatch(
+        (x - width / 2, y - height / 2), width, height, boxstyle=round_,
+        facecolor=style.CELLS[0], edgecolor=style.INK,
+    )  # fmt: skip
+    ax.add_patch(box)
+    return ax.text(x, y, words, ha="center", va="center", fontsize=9, color=style.INK)
+
+
+def _node(ax: Axes, place: Place, words: str) -> Text:
+    ax.add_patch(Circle(place, 0.34, facecolor=style.CELLS[0], edgecolor=style.INK))
+    return ax.text(*place, words, ha="center", va="center", fontsize=10, color=style.INK)
+
+
+def _frame(ax: Axes, corner: Place, width: float, height: float) -> None:
+    frame = Rectangle(corner, width, height, facecolor="none", edgecolor=style.QUIET)
+    frame.set(linestyle="--", linewidth=0.8)
+    ax.add_patch(frame)
+
+
+def _wire(ax: Axes, *corners: Place, sign: str = "", norm: bool = False) -> FancyArrowPatch:
+    """Draw an arrow through corners: its sign stands at its end, a dot on its middle is a norm."""
+    arrow = FancyArrowPatch(
+        path=Path(corners), arrowstyle="-|>", mutation_scale=12, shrinkA=0, shrinkB=0,
+        color=style.INK, linewidth=1.1, joinstyle="miter",
+    )  # fmt: skip
+    ax.add_patch(arrow)
+    (x, y), (end_x, end_y) = corners[-2:]
+    if sign:
+        length = np.hypot(end_x - x, end_y - y)
+        along = np.array([end_x - x, end_y - y]) / length
+        beside = 0.22 * np.array([-along[1], along[0]]) * (1 if along[0] >= 0 else -1)
+        x, y = np.array([end_x, end_y]) - 0.4 * along + beside
+        ax.text(x, y, sign, ha="center", va="center", fontsize=10, color=style.INK)
+    if norm:
+        ax.plot((x + end_x) / 2, (y + end_y) / 2, "o", color=style.INK, markersize=7)
+    return arrow
+
+
+# The reset
+
+
+def reset_cosine(vigilance: float, cdz: ArrayLike, c: float) -> NDArray[np.float64]:
+    """Return the cosine below which a node is reset; 0 where none of [0, 1] is.
+
+    Parameters
+    ----------
+    vigilance : float in (0, 1)
+        What the norm of r has to reach.
+    cdz : array_like
+        Norm of ``c d z_J``, not negative.
+    c : float in (0, 1)
+        As in `arkaq_edu.art.ART2`.
+
+    Returns
+    -------
+    array of the shape of `cdz`
+        Cosines of the angle between `u` and `z_J`, from 0 to 1.
+
+    Notes
+    -----
+    With ``s = norm(c p)``, equation 2.47 is quadratic in s:
+    ``((1 + c) / c - r**2) s**2 - 2 r**2 s + 1 + c - r**2 - cdz**2 / c = 0``.
+
+    Examples
+    --------
+    >>> from arkaq_edu.art import match_norm
+    >>> cosine = reset_cosine(0.95, 0.9, c=0.1)
+    >>> cosine.round(3), match_norm(cosine, 0.9, c=0.1).round(3)
+    (np.float64(0.764), np.float64(0.95))
+    """
+    inside = {"open_low": True, "open_high": True}
+    r2 = _checks.number("vigilance", vigilance, 0, 1, **inside) ** 2
+    c = _checks.number("c", c, 0, 1, **inside)
+    cdz = np.asarray(cdz, dtype=float)
+    square, rest = (1 + c) / c - r2, 1 + c - r2 - cdz**2 / c
+    inner = r2**2 - square * rest
+    s = (r2 + np.sqrt(np.maximum(inner, 0))) / square
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cosine = (s**2 - c**2 - cdz**2) / (2 * c * cdz)
+    return np.where((inner >= 0) & (cdz > 0), np.clip(cosine, 0, 1), 0.0)
+
+
+def reset_fact(c: float, d: float, vigilance: float) -> str:
+    """Say which cosines a node that has learned all it can is reset at.
+
+    Examples
+    --------
+    >>> reset_fact(0.1, 0.9, 0.95)
+    'once learned, vigilance 0.95 resets a cosine below 0.76 (c = 0.1, d = 0.9)'
+    >>> reset_fact(0.1, 0.9, 0.7)
+    'once learned, vigilance 0.7 never resets (c = 0.1, d = 0.9)'
+    >>> reset_fact(0.3, 0.9, 0.95)
+    'c d / (1 - d) is 2.7 and must not exceed 1 (c = 0.3, d = 0.9)'
+    """
+    end, knobs = learned_norm(c, d), f"(c = {c:g}, d = {d:g})"
+    if end > 1 + 1e-12:
+        return f"c d / (1 - d) is {end:.3g} and must not exceed 1 {knobs}"
+    cosine = float(reset_cosine(vigilance, end, c))
+    resets = f"resets a cosine below {cosine:.2f}" if cosine > 0 else "never resets"
+    return f"once learned, vigilance {vigilance:g} {resets} {knobs}"
+
+
+def learned_norm(c: float, d: float) -> float:
+    """Return the norm of ``c d z_J`` at the end of learning, where ``norm(z_J) = 1 / (1 - d)``.
+
+    Examples
+    --------
+    >>> round(learned_norm(0.1, 0.9), 3)
+    0.9
+    """
+    return c * d / (1 - d)
+
+
+def figure_2_21(
+    ax: Axes | None = None, *, c: float = 0.1, d: float = 0.9, vigilance: float = 0.95
+) -> ResetPlot:
+    """Draw figure 2.21, what the orienting subsystem sees while a category learns (eq 2.47).
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+    c, d : float in (0, 1)
+        As in `arkaq_edu.art.ART2`; the thesis gives neither.
+    vigilance : float in (0, 1)
+        Below it is a reset.
+
+    Returns
+    -------
+    ResetPlot
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> plot = figure_2_21(Figure().subplots())
+    >>> float(plot.curves[0.0].get_ydata().min().round(3))
+    0.746
+    """
+    ax = style.axes(
+        ax, xlabel=r"$\|c\,d\,z_J\|$, from an uncommitted node to one that has learned all",
+        ylabel=r"$\|r\|$", title=reset_fact(c, d, vigilance),
+    )  # fmt: skip
+    cdz = np.linspace(0, learned_norm(c, d), 101)
+    curves = {}
+    for cosine in COSINES:
+        norm_r = match_norm(cosine, cdz, c)
+        (curves[cosine],) = ax.plot(cdz, norm_r, color=style.INK, linewidth=1.3)
+        name = r"$\cos(u, z_J)$ = 1" if cosine == 1 else f"{cosine:g}"
+        ax.annotate(name, (cdz[-1], norm_r[-1]), (5, 0), textcoords="offset points", va="center",
+                    fontsize=9, annotation_clip=False)  # fmt: skip
+    line = ax.axhline(vigilance, color=style.OURS, linestyle="--")
+    ax.text(0.03, 0.05, "reset below the dashed line", color=style.OURS, fontsize=9,
+            transform=ax.transAxes)  # fmt: skip
+    ax.set(xlim=(0, cdz[-1]), ylim=(0.7, 1.02))
+    return ResetPlot(ax, curves, line)
+
+
+# Networks at work
+
+
+def plot_letters(
+    patterns: ArrayLike,
+    names: Sequence[str] = (),
+    ax: Axes | None = None,
+    *,
+    columns: int = 5,
+    title: str = "",
+) -> GridsPlot:
+    """Draw binary patterns side by side, each as a grid of points.
+
+    Parameters
+    ----------
+    patterns : array_like, shape (n, m)
+        Zeros and ones, row by row from the top of each grid.
+    names : sequence of n str, optional
+        What stands under each.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+    columns : int
+        Width of a grid, a divisor of m.
+    title : str
+        What the picture states.
+
+    Returns
+    -------
+    GridsPlot
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> plot_letters([LETTERS["L"], LETTERS["T"]], "LT", Figure().subplots())
+    2 grids
+    """
+    patterns = _checks.array("patterns", patterns, (None, None)) > 0
+    ax = _grid_axes(ax, len(patterns), columns, patterns.shape[1], title)
+    words = []
+    for k, pattern in enumerate(patterns):
+        _fill(ax, k, pattern, np.zeros_like(pattern), columns)
+        if k < len(names):
+            words.append(_caption(ax, k, names[k], columns))
+    return GridsPlot(ax, list(patterns), words)
+
+
+def plot_search(
+    trace: pd.DataFrame,
+    names: Mapping[int, str] | None = None,
+    ax: Axes | None = None,
+    *,
+    columns: int = 5,
+) -> GridsPlot:
+    """Draw the search of ART1 for one pattern, step by step: what F1 shows, and what became of it.
+
+    Filled points are active in F1; crosses mark inputs that the expectation has put out.
+
+    Parameters
+    ----------
+    trace : DataFrame
+        What `arkaq_edu.art.ART1.trace` returns.
+    names : mapping of int to str, optional
+        What to call the nodes of F2.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+    columns : int
+        Width of a grid.
+
+    Returns
+    -------
+    GridsPlot
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> from arkaq_edu.art import ART1
+    >>> network = ART1(0.8).fit([LETTERS["L"], LETTERS["T"]])
+    >>> plot_search(network.trace(LETTERS["I"]), ax=Figure().subplots())
+    0 resets, then node 1 is in resonance
+    """
+    steps = [step for _, step in trace.groupby("step")]
+    resets = sum(bool(step["reset"].iloc[0]) for step in steps)
+    end = "no node is left" if len(steps) == 1 else f"{_who(steps[-1], names)} is in resonance"
+    title = f"{resets} reset{'' if resets == 1 else 's'}, then {end}"
+    ax = _grid_axes(ax, len(steps), columns, len(steps[0]), title)
+    grids, words = [], []
+    for k, step in enumerate(steps):
+        active = step["activity"].to_numpy() > 0
+        lost = (step["input"].to_numpy() > 0) & ~active
+        _fill(ax, k, active, lost, columns)
+        grids.append(active)
+        words.append(_caption(ax, k, _verdict(step, names), columns))
+    return GridsPlot(ax, grids, words)
+
+
+def plot_settling(trace: pd.DataFrame, theta: float, ax: Axes | None = None) -> SettlingPlot:
+    """Draw the activity `u` of each feature while the loops of ART2's F1 settle.
+
+    Parameters
+    ----------
+    trace : DataFrame
+        What `arkaq_edu.art.ART2.trace` returns.
+    theta : float
+        The noise threshold.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+
+    Returns
+    -------
+    SettlingPlot
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> from arkaq_edu.art import ART2
+    >>> network = ART2(0.9, theta=0.3).fit([[0, 0, 1.0]])
+    >>> plot_settling(network.trace([1.0, 0.2, 0.0]), 0.3, Figure().subplots())
+    1 of 2 active features is above theta
+    """
+    table = trace.pivot(index="step", columns="feature", values="u")
+    given = trace[trace["step"] == 0].set_index("feature")["input"]
+    active = int((given > 0).sum())
+    left = int((table.iloc[-1] >= theta).sum())
+    title = f"{left} of {active} active features {'is' if left == 1 else 'are'} above theta"
+    ax = style.axes(ax, xlabel="cycle of F1", ylabel="activity u", title=title)
+    # Before the first cycle there is only the input.
+    cycles = np.arange(len(table) + 1)
+    lines = []
+    for feature in table.columns:
+        (line,) = ax.plot(
+            cycles, [given[feature], *table[feature]], "-o", color=style.INK, markersize=3
+        )
+        lines.append(line)
+    style.measurements(np.zeros(len(given)), given, ax, markersize=7)
+    ax.axhline(theta, color=style.QUIET, linestyle=":", linewidth=1)
+    ax.annotate("theta", (cycles[-1], theta), (5, 0), textcoords="offset points", va="center",
+                color=style.QUIET, fontsize=9, annotation_clip=False)  # fmt: skip
+    node = trace.groupby("step")["node"].first()
+    for step in node.index[node.diff().fillna(0) != 0]:
+        ax.axvline(step + 0.5, color=style.OURS, linestyle="--", linewidth=1)
+        late = step > len(table) / 2
+        ax.annotate(f"F2 chooses node {node[step]}", (step + 0.5, 1.0), (-4 if late else 4, -6),
+                    xycoords=ax.get_xaxis_transform(), textcoords="offset points", fontsize=9,
+                    color=style.OURS, va="center", ha="right" if late else "left")  # fmt: skip
+    ax.set(ylim=(-0.03, 1.05), xlim=(-0.3, cycles[-1] + 0.1))
+    return SettlingPlot(ax, lines)
+
+
+def _grid_axes(ax: Axes | None, n: int, columns: int, m: int, title: str) -> Axes:
+    if m % columns:
+        raise ValueError(f"columns must divide the {m} points of a pattern, got {columns}")
+    width = n * (columns + 1.5) - 1.2
+    return _blank(ax, title, (-0.3, width), (-3.6, m // columns + 0.3), inch=0.25)
+
+
+def _fill(
+    ax: Axes, k: int, active: NDArray[np.bool_], lost: NDArray[np.bool_], columns: int
+) -> None:
+    """Draw grid `k`: filled points where `active`, crosses where `lost`."""
+    rows = len(active) // columns
+    left = k * (columns + 1.5)
+    corners = [(left + i % columns, rows - 1 - i // columns) for i in range(len(active))]
+    squares = [Rectangle(corner, 1, 1) for corner in corners]
+    colors = [style.INK if on else "white" for on in active]
+    ax.add_collection(
+        PatchCollection(squares, facecolors=colors, edgecolors="#bbbbbb", linewidths=0.6)
+    )
+    x, y = np.reshape(
+        [corner for corner, gone in zip(corners, lost, strict=True) if gone], (-1, 2)
+    ).T
+    ax.plot(x + 0.5, y + 0.5, "x", color=style.OURS, markersize=6, markeredgewidth=1.6)
+
+
+def _caption(ax: Axes, k: int, words: str, columns: int) -> Text:
+    middle = k * (columns + 1.5) + columns / 2
+    return ax.text(middle, -0.4, words, ha="center", va="top", fontsize=9, color=style.INK)
+
+
+def _who(step: pd.DataFrame, names: Mapping[int, str] | None) -> str:
+    node = int(step["node"].iloc[0])
+    return (names or {}).get(node, f"node {node}")
+
+
+def _verdict(step: pd.DataFrame, names: Mapping[int, str] | None) -> str:
+    node, match = step["node"].iloc[0], step["match"].iloc[0]
+    if node < 0:
+        return "input alone"
+    end = "reset" if step["reset"].iloc[0] else "resonance"
+    return f"{_who(step, names)}\nmatch {match:.2f}\n{end}"
