@@ -118,13 +118,13 @@ def test_a_walk_is_a_walk(agent):
     pd.testing.assert_frame_equal(table, walk(agent, 2500.0, -0.3, seed=4).table)
 
 
-def test_a_result_is_the_mean_and_the_percentiles_of_its_seeds():
+def test_a_result_is_the_mean_and_the_range_of_its_seeds():
     rng = np.random.default_rng(0)
     values = rng.normal(size=20)
     rows = pd.DataFrame({"quantity": "x", "seed": range(20), "value": values})
     row = summary(rows).iloc[0]
     assert row["mean"] == pytest.approx(values.mean())
-    assert (row.low, row.high) == pytest.approx(tuple(np.quantile(values, [0.05, 0.95])))
+    assert (row.low, row.high) == (min(values), max(values))
     assert row.seeds == 20
     assert np.isnan(row.thesis)
 
@@ -146,6 +146,7 @@ def test_the_study_kept_with_the_course_is_over_twenty_seeds_and_shows_what_was_
     assert (study.seeds >= 20).all()
     who = "ARKAQ, consistent Kalman filter"
     assert study.loc[f"ball reached (%), {who}", "mean"] >= 99
+    assert study.loc[f"ball reached (%), {who}", "low"] >= 97
     assert study.loc[f"way walked over straight way (median), {who}", "mean"] <= 1.10
     assert study.loc[f"+50 earned (%), {who}", "mean"] >= 70
 

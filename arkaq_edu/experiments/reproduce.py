@@ -61,8 +61,8 @@ def results(
     Returns
     -------
     DataFrame
-        Columns quantity, thesis (NaN where it prints none), mean, low and high (the 5th and 95th
-        percentile over the seeds), seeds.
+        Columns quantity, thesis (NaN where it prints none), mean, low and high (the lowest and
+        highest of the seeds), seeds.
 
     Notes
     -----
@@ -115,8 +115,8 @@ def summary(rows: pd.DataFrame) -> pd.DataFrame:
     table = pd.DataFrame(
         {
             "mean": by_quantity.mean(),
-            "low": by_quantity.quantile(0.05),
-            "high": by_quantity.quantile(0.95),
+            "low": by_quantity.min(),
+            "high": by_quantity.max(),
             "seeds": by_quantity.count(),
         }
     )

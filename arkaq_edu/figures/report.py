@@ -37,7 +37,7 @@ figcaption { color: #555; font-size: .9rem; }
 <p>$summary</p>
 <h2>Numbers</h2>
 $table
-<p>Mean, 5th and 95th percentile over the seeds. A dash: the thesis prints no such number.</p>
+<p>Mean, lowest and highest over the seeds. A dash: the thesis prints no such number.</p>
 <h2>Figures</h2>
 <div class="figures">
 $figures

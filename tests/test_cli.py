@@ -1,0 +1,81 @@
+"""The arkaq command's work: train, watch, reproduce."""
+
+import pandas as pd
+import pytest
+from click.testing import CliRunner
+
+from arkaq_edu import cli, experiments
+from arkaq_edu.arkaq import Arkaq, Learning
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return lambda *words: CliRunner().invoke(cli.main, [str(word) for word in words])
+
+
+@pytest.fixture
+def brief(monkeypatch):
+    """Make every training short: what is tested is the command, not the learning."""
+    from arkaq_edu.experiments import approach
+
+    def short(seed, vigilance=0.1, **options):
+        options["learning"] = Learning(patterns=300, exploration=500, exploitation=0)
+        return long(seed, vigilance, **options)
+
+    long = approach.train
+    monkeypatch.setattr(approach, "train", short)
+    monkeypatch.setattr(experiments, "train", short, raising=False)
+
+
+def test_train_leaves_an_agent_and_says_how_well_it_does(run, brief, tmp_path):
+    answer = run("train", "--seed", 2, "--vigilance", 0.2, "--out", "mine.npz")
+    assert answer.exit_code == 0, answer.output
+    agent = Arkaq.load(tmp_path / "mine.npz")
+    assert (agent.seed, agent.vigilance) == (2, 0.2)
+    assert f"{agent.art.n_clusters_} states" in answer.output
+
+
+def test_train_refuses_a_file_that_holds_another_run(run, brief):
+    run("train", "--seed", 2, "--out", "mine.npz")
+    answer = run("train", "--seed", 3, "--out", "mine.npz")
+    assert answer.exit_code == 2
+    assert len(answer.output.strip().splitlines()[-1:]) == 1
+    assert "another seed" in answer.output
+
+
+def test_watch_films_the_courses_own_agent(run, tmp_path):
+    answer = run("watch", "--distance", 900, "--orientation", 0.1, "--out", "walk.gif")
+    assert answer.exit_code == 0, answer.output
+    assert "reached the ball" in answer.output
+    assert (tmp_path / "walk.gif").read_bytes()[:3] == b"GIF"
+
+
+@pytest.mark.parametrize(
+    ("words", "hint"),
+    [
+        (["train", "--vigilance", "-1"], "vigilance must be"),
+        (["train", "--seed", "-1"], "--seed"),
+        (["watch", "no.npz"], "does not exist"),
+        (["watch", "--distance", "1e9"], "distance must be"),
+        (["watch", "--out", "walk.txt"], ".gif"),
+        (["reproduce", "--seeds", "0"], "--seeds"),
+    ],
+)
+def test_bad_input_gets_one_line_and_status_two(run, words, hint):
+    answer = run(*words)
+    assert answer.exit_code == 2
+    assert len(answer.output.splitlines()) == 1
+    assert hint in answer.output
+
+
+def test_reproduce_writes_a_page_that_opens_offline_and_a_table(run, brief, tmp_path):
+    answer = run("reproduce", "--seeds", 1, "--approaches", 2, "--jobs", 1, "--out", "report")
+    assert answer.exit_code == 0, answer.output
+    table = pd.read_csv(tmp_path / "report" / "results.csv")
+    assert table.columns.tolist() == ["quantity", "thesis", "mean", "low", "high", "seeds"]
+    assert table.thesis.dropna().tolist() == [137, 333, 519, 825, 1933]
+    page = (tmp_path / "report" / "index.html").read_text()
+    assert "://" not in page
+    for number in ["5.5", "5.6", "5.7", "5.8", *(f"5.{n}" for n in range(10, 31))]:
+        assert f'id="figure-{number}"' in page
