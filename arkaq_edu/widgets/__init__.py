@@ -6,6 +6,14 @@ and one canvas that draws any scene.
 
 from .explorer import CanvasView, Explorer
 from .kalman import kalman_explorer
+from .resonance import letters_explorer, resonance_explorer
 from .vigilance import vigilance_explorer
 
-__all__ = ["CanvasView", "Explorer", "kalman_explorer", "vigilance_explorer"]
+__all__ = [
+    "CanvasView",
+    "Explorer",
+    "kalman_explorer",
+    "letters_explorer",
+    "resonance_explorer",
+    "vigilance_explorer",
+]
