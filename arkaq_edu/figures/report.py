@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import html
 import io
 import os
 from collections.abc import Callable, Mapping
@@ -33,7 +34,7 @@ figcaption { color: #555; font-size: .9rem; }
 </style>
 </head>
 <body>
-<h1>The ball problem: thesis and reproduction</h1>
+<h1>ARKAQ learning: thesis and reproduction</h1>
 <p>$summary</p>
 <h2>Numbers</h2>
 $table
@@ -105,7 +106,7 @@ def _number(value: float) -> str:
     """Write a number with three digits at least, and no more decimals than it deserves."""
     if pd.isna(value):
         return "\N{EN DASH}"
-    return f"{value:.0f}" if abs(value) >= 100 or value == round(value) else f"{value:.3g}"
+    return f"{value:.0f}" if abs(value) >= 100 or value == round(value) else f"{value:#.3g}"
 
 
 def _figure(number: str, draw: Callable[[], object]) -> str:
@@ -115,9 +116,16 @@ def _figure(number: str, draw: Callable[[], object]) -> str:
     buffer = io.BytesIO()
     plt.gcf().savefig(buffer, format="png", dpi=110, bbox_inches="tight")
     plt.close("all")
-    caption = (draw.__doc__ or "").strip().splitlines()[0].rstrip(".") + "."
+    caption = _caption(number, draw)
     png = base64.b64encode(buffer.getvalue()).decode()
     return _FIGURE.substitute(number=number, caption=caption, png=png)
+
+
+def _caption(number: str, draw: Callable[[], object]) -> str:
+    """Make a caption of a docstring such as "Draw figure 5.6, the automaton; see `plot`."."""
+    line = (draw.__doc__ or "").strip().splitlines()[0]
+    said = line.removeprefix(f"Draw figure {number}, ").split("; see ")[0].rstrip(".")
+    return html.escape(f"{said[:1].upper()}{said[1:]}.")
 
 
 def _replace(path: Path, text: str) -> None:
