@@ -124,7 +124,7 @@ def _figure(number: str, draw: Callable[[], object]) -> str:
 def _caption(number: str, draw: Callable[[], object]) -> str:
     """Make a caption of a docstring such as "Draw figure 5.6, the automaton; see `plot`."."""
     line = (draw.__doc__ or "").strip().splitlines()[0]
-    said = line.removeprefix(f"Draw figure {number}, ").split("; see ")[0].rstrip(".")
+    said = line.removeprefix(f"Draw figure {number}").lstrip(",: ").split("; see ")[0].rstrip(".")
     return html.escape(f"{said[:1].upper()}{said[1:]}.")
 
 
