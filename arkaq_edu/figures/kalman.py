@@ -22,6 +22,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import FillBetweenPolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.text import Annotation, Text
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _checks
@@ -335,6 +336,7 @@ def plot_track(
     truth, Z = _checks.array("truth", truth, (T,)), _checks.array("Z", Z, (T, None), allow_nan=True)
     ylabel = ("distance (mm)", "orientation (rad)")[axis]
     ax = style.axes(ax, xlabel="footstep cycle", ylabel=ylabel, title=title)
+    ax.xaxis.set_major_locator(MaxNLocator(integer=True, steps=[1, 2, 5, 10]))
     k = np.arange(T)
     std = np.sqrt(trace.P[:, axis, axis])
     label = "estimate, one sigma each side"
