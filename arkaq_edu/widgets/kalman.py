@@ -143,11 +143,17 @@ def kalman_explorer() -> Explorer:
     wide: dict[str, Any] = {
         "layout": {"width": "min(100%, 36em)"}, "style": {"description_width": "9em"},
     }  # fmt: skip
-    powers: dict[str, Any] = {"base": 10, "step": 0.05, "readout_format": ".0f"} | wide
+    # The truth is a stop of both: a browser moves a slider that starts between two stops.
+    powers: dict[str, Any] = {"base": 10, "step": 0.05} | wide
+    r, q = (np.log10([sigma / 10, sigma * 10]) for sigma in (SIGHTING_NOISE, STEP_NOISE))
     return Explorer(
         partial(draw, simulated_walk()),
-        r=ipywidgets.FloatLogSlider(10.0, min=1, max=3, description="sigma of R (mm)", **powers),
-        q=ipywidgets.FloatLogSlider(25.0, min=0, max=2.5, description="sigma of Q (mm)", **powers),
+        r=ipywidgets.FloatLogSlider(
+            10.0, min=r[0], max=r[1], readout_format=".0f", description="sigma of R (mm)", **powers
+        ),
+        q=ipywidgets.FloatLogSlider(
+            25.0, min=q[0], max=q[1], readout_format=".1f", description="sigma of Q (mm)", **powers
+        ),
         dropout=ipywidgets.FloatSlider(
             0.0, min=0, max=0.9, step=0.1, readout_format=".0%", description="dropout", **wide
         ),
@@ -179,7 +185,7 @@ def draw(walk: Walk, r: float, q: float, dropout: float) -> Scene:
         f"mean NIS {mean:.2f} where {low:.2f} to {high:.2f} is right; "
         f"estimate {ours:.0f} mm off, sightings {theirs:.0f} mm"
     )
-    told = f"R = ({r:.0f} mm)², Q = ({q:.0f} mm)², {np.isnan(Z).sum()} of {len(Z)} missing"
+    told = f"R = ({r:.0f} mm)², Q = ({q:.3g} mm)², {np.isnan(Z).sum()} of {len(Z)} missing"
     return Scene(fact, [_track(walk, Z, trace, told), _nis(trace)])
 
 
