@@ -373,7 +373,7 @@ class Corridor(gymnasium.Env):
         reward = -1.0 if action == 1 and self.place == 17 else 0.0
         self.place = min(self.place + (-1, 1, 0)[action], 17)
         done = self.place == 0
-        cut_short = self.cycles >= 12 and action != 1  # never while an action is held
+        cut_short = self.cycles >= 4 and action != 1  # never while an action is held
         reward += 100.0 * done
         return self.look(action != 2), reward, done, action == 2 or cut_short, {"is_success": done}
 

@@ -135,6 +135,15 @@ def test_a_ball_seen_again_is_not_lost():
     assert ends == [False] * 7 + [True]
 
 
+def test_a_ball_reached_unseen_is_reached():
+    env = gymnasium.make(TASK, patience=3, camera=Camera(min_pixels=10**6))
+    observations, rewards, _, terminated, truncated = play(
+        env, always(0), 0, {"distance": 750, "orientation": 0.0}
+    )
+    assert len(rewards) == 3 and not observations.any()
+    assert (rewards[-1], terminated, truncated) == (150, True, False)
+
+
 def test_the_time_limit_truncates():
     env = gymnasium.make(TASK, patience=1000)
     _, rewards, infos, terminated, truncated = play(

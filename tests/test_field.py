@@ -588,6 +588,21 @@ def test_a_ball_cut_by_the_edge_is_still_measured_until_its_centre_is_out():
         assert seen_from_start(distance, 0.53) is seen_from_start(distance, -0.53) is None
 
 
+def test_a_ball_cut_by_a_corner_of_the_picture_is_not_measured():
+    world, eye, met = World(rng=0), Camera(), 0
+    for distance in (250.0, 290.0):
+        for orientation in (-0.42, 0.42):
+            world.reset(
+                (0.0, 0.0, 0.0),
+                (distance * math.cos(orientation), distance * math.sin(orientation)),
+            )
+            orange = eye.colours(world) == pitch.ORANGE
+            assert orange[-1].any() and orange[:, [0, -1]].any()
+            met += orange.sum() > 500
+            assert eye.sighting(world) is None
+    assert met == 4
+
+
 def test_far_and_edge_sightings_drop_out_by_themselves():
     rng = np.random.default_rng(8)
 
