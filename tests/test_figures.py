@@ -15,7 +15,7 @@ from matplotlib.path import Path as Polygon
 from PIL import Image
 from scipy import stats
 
-from arkaq_edu.arkaq import Q_LEARNING, SEGMENTATION, Arkaq
+from arkaq_edu.arkaq import Q_LEARNING, SEGMENTATION, Arkaq, Learning
 from arkaq_edu.experiments import STARTS, Walk, load_agent, walk
 from arkaq_edu.field import Camera, Legs, World
 from arkaq_edu.field.camera import FIELD_OF_VIEW
@@ -250,6 +250,20 @@ def test_an_agent_without_values_has_no_map():
         policy.figure_5_16(fresh_axes(), agent=Arkaq(rng=0))
 
 
+def test_the_learning_curve_is_the_mean_of_the_last_episodes():
+    agent = Arkaq(rng=0, learning=Learning(exploration=11, exploitation=20))
+    rows = [(3, 0.0), (4, 100.0), (5, 150.0), (2, 50.0)]
+    agent.history = [("segmentation", 9, 150.0, True)]
+    agent.history += [("Q-learning", cycles, reward, reward > 0) for cycles, reward in rows]
+    plot = policy.plot_learning(agent, fresh_axes(), window=2)
+    assert plot.curve.get_xdata().tolist() == [7, 12, 14]
+    assert plot.curve.get_ydata() == pytest.approx([50, 125, 100])
+    assert set(plot.switch.get_xdata()) == {11}
+    assert repr(plot) == "reward of 2 episodes: 50 at first, 100 at the end"
+    with pytest.raises(ValueError, match="window must be"):
+        policy.plot_learning(agent, fresh_axes(), window=5)
+
+
 # The trajectories: 5.17 to 5.30
 
 
@@ -311,11 +325,11 @@ def short_walk(agent):
     return Walk(table, way.is_success, way.reward)
 
 
-@pytest.mark.filterwarnings("ignore:Animation was deleted")
 def test_marks_on_the_field_are_where_the_ball_was_seen_and_believed(short_walk):
     table = short_walk.table.assign(heading=lambda looks: looks.heading + 0.3)
     moved = Walk(table, True, 100.0)
     walking = animation.animate_walk(moved)
+    walking._draw_was_started = True  # it is drawn here frame by frame
     for number, look in table.iterrows():
         walking._draw_frame(number)
         ring, cross = walking._fig.axes[0].lines

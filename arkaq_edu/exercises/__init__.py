@@ -5,15 +5,19 @@ pleased about; where the answer is not right it raises `ExerciseError` with a li
 """
 
 from ._ask import ExerciseError
+from .approach import check_backup, check_boltzmann, check_reward
 from .kalman import check_combine, check_nis, check_turn
 from .segmentation import check_nearest, check_present, check_scale
 
 __all__ = [
     "ExerciseError",
+    "check_backup",
+    "check_boltzmann",
     "check_combine",
     "check_nearest",
     "check_nis",
     "check_present",
+    "check_reward",
     "check_scale",
     "check_turn",
 ]

@@ -1,4 +1,4 @@
-"""Figure 5.16: what the agent does, state by state.
+"""Figure 5.16: what the agent does, state by state; and how it came to know it.
 
 References
 ----------
@@ -52,6 +52,18 @@ class PolicyPlot(NamedTuple):
     def __repr__(self) -> str:
         """Return what the picture states."""
         return self.ax.get_title(loc="left") or f"{len(self.cells.get_paths())} states"
+
+
+class LearningPlot(NamedTuple):
+    """What `plot_learning` drew: the mean reward, and where exploitation begins."""
+
+    ax: Axes
+    curve: Line2D
+    switch: Line2D
+
+    def __repr__(self) -> str:
+        """Return what the picture states."""
+        return self.ax.get_title(loc="left")
 
 
 def plot_policy(
@@ -138,3 +150,53 @@ def figure_5_16(ax: Axes | None = None, *, agent: Arkaq | None = None) -> Policy
     beside = "" if printed is None else f" (thesis {printed})"
     title = f"{len(actions)} states{beside} at vigilance {agent.vigilance:g}: {parts}"
     return plot_policy(agent.art.cluster_centers_, actions, ax, title=title)
+
+
+def plot_learning(agent: Arkaq, ax: Axes | None = None, *, window: int = 50) -> LearningPlot:
+    """Draw how the reward of an episode grew while the agent learned.
+
+    Parameters
+    ----------
+    agent : Arkaq
+        An agent that has learned.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+    window : int
+        Episodes over which the reward is averaged.
+
+    Returns
+    -------
+    LearningPlot
+        ``curve``: the mean reward of the last `window` episodes, by cycles of Q-learning;
+        ``switch``: the cycle at which exploitation takes the place of exploration.
+
+    Raises
+    ------
+    ValueError
+        If the agent has been through fewer episodes than `window`.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> from arkaq_edu.experiments import load_agent
+    >>> x, y = plot_learning(load_agent(), Figure().subplots()).curve.get_data()
+    >>> bool(y[-1] > y[0])
+    True
+    """
+    episodes = [episode for episode in agent.history if episode[0] == "Q-learning"]
+    window = _checks.integer("window", window, 1, len(episodes))
+    cycles = np.cumsum([cycles for _, cycles, _, _ in episodes])
+    rewards = np.array([reward for _, _, reward, _ in episodes])
+    mean = np.convolve(rewards, np.full(window, 1 / window), "valid")
+    ax = style.axes(
+        ax,
+        xlabel="cycle of Q-learning",
+        ylabel=f"reward of an episode, mean of {window}",
+        title=f"reward of {window} episodes: {mean[0]:.0f} at first, {mean[-1]:.0f} at the end",
+    )
+    (curve,) = ax.plot(cycles[window - 1 :], mean, color=style.OURS)
+    start = agent.learning.exploration
+    switch = ax.axvline(start, color=style.QUIET, ls="--", lw=1)
+    ax.text(start, 2, " exploits from here", color=style.QUIET)
+    ax.set(ylim=(0, 155), xlim=(0, None))
+    return LearningPlot(ax, curve, switch)
