@@ -428,7 +428,8 @@ def plot_letters(
     2 grids
     """
     patterns = _checks.array("patterns", patterns, (None, None)) > 0
-    ax = _grid_axes(ax, len(patterns), columns, patterns.shape[1], title)
+    below = 1.4 if len(names) else 0.3
+    ax = _grid_axes(ax, len(patterns), columns, patterns.shape[1], title, below)
     words = []
     for k, pattern in enumerate(patterns):
         _fill(ax, k, pattern, np.zeros_like(pattern), columns)
@@ -475,7 +476,7 @@ def plot_search(
     resets = sum(bool(step["reset"].iloc[0]) for step in steps)
     end = "no node is left" if len(steps) == 1 else f"{_who(steps[-1], names)} is in resonance"
     title = f"{resets} reset{'' if resets == 1 else 's'}, then {end}"
-    ax = _grid_axes(ax, len(steps), columns, len(steps[0]), title)
+    ax = _grid_axes(ax, len(steps), columns, len(steps[0]), title, below=3.2)
     grids, words = [], []
     for k, step in enumerate(steps):
         active = step["activity"].to_numpy() > 0
@@ -539,11 +540,11 @@ def plot_settling(trace: pd.DataFrame, theta: float, ax: Axes | None = None) -> 
     return SettlingPlot(ax, lines)
 
 
-def _grid_axes(ax: Axes | None, n: int, columns: int, m: int, title: str) -> Axes:
+def _grid_axes(ax: Axes | None, n: int, columns: int, m: int, title: str, below: float) -> Axes:
     if m % columns:
         raise ValueError(f"columns must divide the {m} points of a pattern, got {columns}")
     width = n * (columns + 1.5) - 1.2
-    return _blank(ax, title, (-0.3, width), (-3.6, m // columns + 0.3), inch=0.25)
+    return _blank(ax, title, (-0.3, width), (-below, m // columns + 0.3), inch=min(0.25, 9 / width))
 
 
 def _fill(

@@ -1,0 +1,169 @@
+"""The checks of the exercises on adaptive resonance: right passes, wrong is told in what way."""
+
+from pathlib import Path
+
+import nbformat
+import numpy as np
+import pytest
+
+from arkaq_edu.exercises import ExerciseError, check_choose, check_match, check_norm_r
+
+NOTEBOOK = Path(__file__).parents[1] / "notebooks" / "06_adaptive_resonance.ipynb"
+
+
+def match(pattern, template):
+    return np.minimum(pattern, template).sum() / np.sum(pattern)
+
+
+def choose(pattern, templates, reset):
+    signal = [2 * (pattern * z).sum() / (1 + z.sum()) for z in templates]
+    return max((j for j in range(len(templates)) if j not in reset), key=lambda j: signal[j])
+
+
+def norm_r(u, z, c, d):
+    p = u + d * z
+    return np.linalg.norm(u + c * p) / (np.linalg.norm(u) + np.linalg.norm(c * p))
+
+
+def closed_form(u, z, c, d):
+    """Equation 2.47, for which the angle of z = 0 does not exist."""
+    cdz = c * d * np.linalg.norm(z)
+    x = 2 * cdz * (u @ z) / np.linalg.norm(z) if z.any() else 0.0
+    above = (1 + c) ** 2 + (1 + c) * x + cdz**2
+    return np.sqrt(above) / (1 + np.sqrt(c**2 + c * x + cdz**2))
+
+
+RIGHT = [
+    (check_match, match),
+    (check_choose, choose),
+    (check_norm_r, norm_r),
+    (check_norm_r, closed_form),
+]
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize(("check", "answer"), RIGHT)
+def test_a_right_answer_is_praised(check, answer, seed):
+    assert check(answer, rng=seed).startswith("Right")
+
+
+def not_written(*_):
+    raise NotImplementedError
+
+
+def signals(x, Z):
+    return 2 * (Z @ x) / (1 + Z.sum(axis=1))
+
+
+def left(values, reset):
+    values = np.array(values, dtype=float)
+    values[reset] = -np.inf
+    return values.argmax()
+
+
+def pops_reset(x, Z, reset):
+    answer = choose(x, Z, reset)
+    reset.append(answer)
+    return answer
+
+
+def with_p(p):
+    def answer(u, z, c, d):
+        return np.linalg.norm(u + c * p(u, z, d)) / (1 + c * np.linalg.norm(p(u, z, d)))
+
+    return answer
+
+
+WRONG = [
+    (check_match, not_written, "still empty"),
+    (check_match, lambda x, z: None, "return"),
+    (check_match, lambda x, z: x & z, "one number, not an array of shape"),
+    (check_match, lambda x, z: (x & z).sum(), "count the shared points"),
+    (check_match, lambda x, z: (x & z).mean(), "not even match itself"),
+    (check_match, lambda x, z: (x & z).sum() / z.sum(), "size of the template"),
+    (check_match, lambda x, z: (x == z).mean(), "white in both"),
+    (check_match, lambda x, z: (x & z).sum() / (x | z).sum(), "active in either"),
+    (check_match, lambda x, z: 0.5, r"so the match is 0\.\d+; yours is 0.500"),
+    (check_match, lambda x, z: np.inf, "not all of it is a number"),
+    (check_choose, not_written, "still empty"),
+    (check_choose, lambda x, Z, reset: signals(x, Z).max(), "which one it is"),
+    (check_choose, lambda x, Z, reset: 6, "indices 0 to 5"),
+    (check_choose, lambda x, Z, reset: signals(x, Z).argmax(), "strongest of all nodes"),
+    (check_choose, lambda x, Z, reset: np.delete(signals(x, Z), reset).argmax(), "are left"),
+    (check_choose, lambda x, Z, reset: left(Z @ x, reset), "shared points alone"),
+    (check_choose, lambda x, Z, reset: left(Z @ x / Z.sum(axis=1), reset), r"\|z_j\| alone"),
+    (check_choose, lambda x, Z, reset: left(-signals(x, Z), reset), "weakest"),
+    (check_choose, lambda x, Z, reset: left(signals(x, Z), reset[:1]), "which had been reset"),
+    (check_choose, lambda x, Z, reset: left(range(6), reset), "but there is one with"),
+    (check_choose, pops_reset, "changes what it was given"),
+    (check_norm_r, not_written, "still empty"),
+    (check_norm_r, lambda u, z, c, d: u + c * (u + d * z), "one number"),
+    (check_norm_r, lambda u, z, c, d: 1, "added, not the norm of their sum"),
+    (check_norm_r, lambda u, z, c, d: norm_r(u, z, -c, d), "minus"),
+    (check_norm_r, lambda u, z, c, d: np.linalg.norm(u - c * (u + d * z))
+     / (1 - c * np.linalg.norm(u + d * z)), "minus"),
+    (check_norm_r, with_p(lambda u, z, d: u + z), "forgot d"),
+    (check_norm_r, with_p(lambda u, z, d: d * z), "d z alone"),
+    (check_norm_r, lambda u, z, c, d: np.linalg.norm(u + c * (u + d * z))
+     / (1 + np.linalg.norm(u + d * z)), "of c p, not of p"),
+    (check_norm_r, lambda u, z, c, d: norm_r(u, z, c, d) ** 2, "root"),
+    (check_norm_r, lambda u, z, c, d: u @ z / np.linalg.norm(z), "cosine"),
+    (check_norm_r, lambda u, z, c, d: norm_r(u, z, c, d) - 0.01, "should be"),
+    (check_norm_r, lambda u, z, c, d: norm_r(u, z, c, d) if z.any() else 0.0, "never reset"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(("check", "answer", "hint"), WRONG)
+def test_a_wrong_answer_is_told_what_is_wrong(check, answer, hint, seed):
+    with pytest.raises(ExerciseError, match=hint):
+        check(answer, rng=seed)
+
+
+@pytest.mark.parametrize(("check", "answer"), RIGHT[:3])
+def test_fresh_inputs_come_from_the_given_generator(check, answer):
+    asked = []
+
+    def spy(*given):
+        asked.append(repr(given))
+        return answer(*given)
+
+    for seed in (1, 1, 2):
+        check(spy, rng=seed)
+    once = len(asked) // 3
+    assert asked[:once] == asked[once : 2 * once] != asked[2 * once :]
+
+
+@pytest.fixture(scope="module")
+def cells():
+    return [c for c in nbformat.read(NOTEBOOK, as_version=4).cells if "nbgrader" in c.metadata]
+
+
+def test_every_exercise_is_marked_for_the_autograder(cells):
+    marks = [cell.metadata.nbgrader for cell in cells]
+    assert len({mark.grade_id for mark in marks}) == len(marks) == 6
+    for answer, check in zip(marks[::2], marks[1::2], strict=True):
+        assert answer.solution and not answer.grade and not answer.locked
+        assert check.grade and check.locked and not check.solution and check.points > 0
+        assert {answer.schema_version, check.schema_version} == {3}
+    for cell in cells[::2]:
+        assert cell.source.count("### BEGIN SOLUTION") == cell.source.count("### END SOLUTION") == 1
+
+
+def blank(source):
+    """What a student gets: the solution taken out, an empty body put in."""
+    head, rest = source.split("    ### BEGIN SOLUTION\n")
+    return head + "    raise NotImplementedError\n" + rest.split("### END SOLUTION")[1]
+
+
+@pytest.mark.parametrize("solved", [True, False])
+def test_the_masters_answers_pass_and_the_students_blanks_fail_at_the_checks(cells, solved):
+    room = {"np": np}
+    for cell in cells:
+        if not cell.metadata.nbgrader.grade:
+            exec(cell.source if solved else blank(cell.source), room)
+        elif solved:
+            exec(cell.source, room)
+        else:
+            with pytest.raises(ExerciseError, match="still empty"):
+                exec(cell.source, room)
