@@ -100,6 +100,14 @@ def test_it_starts_at_the_thesiss_r_and_the_truth_is_a_stop_that_passes():
             assert np.abs(stops / stop - 1).min() < 1e-9
 
 
+@pytest.mark.parametrize("r, q, side", [(10, 25, 1), (100, 2.5, 1), (1000, 25, -1), (100, 250, -1)])
+def test_noise_believed_too_small_lifts_the_nis_and_too_large_lowers_it(r, q, side):
+    right, wrong = (FACT.match(kalman.draw(WALK, *told, 0.0).fact) for told in ((100, 25), (r, q)))
+    mean, low, high, error, _ = map(float, wrong.groups())
+    assert mean > high if side > 0 else mean < low
+    assert error > float(right[4]), "and the estimate is the worse for it"
+
+
 def test_a_slider_that_adds_up_steps_misses_no_other_sightings():
     one = kalman.draw(WALK, 100.0, 25.0, 0.1 + 0.2)
     assert one.fact == kalman.draw(WALK, 100.0, 25.0, 0.3).fact
