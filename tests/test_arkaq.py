@@ -820,8 +820,13 @@ def test_a_ball_not_seen_at_first_only_costs_the_episode():
     assert len({row[1] for row in segmentation}) > 3
 
 
-@pytest.mark.xfail(reason="the segmentation resets for ever", strict=False)
 def test_a_ball_that_is_never_seen_is_said_to_be_so():
     env = Blindfold(near_task(), hides=lambda k: True, most=3000)
     with pytest.raises(RuntimeError, match="seen"):
         brief_agent(env=env)
+
+
+def test_settings_are_equal_by_value():
+    assert Sensing.thesis() == Sensing.thesis() != Sensing.consistent()
+    assert hash(Sensing.thesis()) == hash(Sensing.thesis())
+    assert Sensing.from_json(Sensing.consistent().to_json()) == Sensing.consistent()

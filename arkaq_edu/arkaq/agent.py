@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 FORMAT = 1
 _SEGMENTING, _LEARNING, _FINISHED = "segmentation", "Q-learning", "finished"
 _SECONDS_BETWEEN_FILES = 5.0
+_MOST_BLIND_LOOKS = 1000
 
 
 class Arkaq:
@@ -154,12 +155,13 @@ class Arkaq:
         Parameters
         ----------
         env : gymnasium.Env
-            The task; its observation's last entry tells whether there was a sighting.
+            The task; its observation's last entry tells whether there was a sighting. Its
+            episodes must end some time, as a time limit sees to.
         checkpoint : path, optional
             A file to keep the run in, written at once, between episodes every few seconds, and at
             the end.
             If it exists, the run in it is taken up where it stopped, and comes to the same result
-            as if it had never been interrupted.
+            as if it had never been interrupted. Without a file, begin again with a new agent.
         progress : bool
             Whether to show progress bars.
 
@@ -172,6 +174,8 @@ class Arkaq:
         ------
         ValueError
             If `checkpoint` holds another run: other settings or another seed.
+        RuntimeError
+            If the ball is never seen.
         """
         if checkpoint is not None and Path(checkpoint).exists():
             self._resume(Path(checkpoint))
@@ -291,14 +295,12 @@ class Arkaq:
 
     def _resume(self, path: Path) -> None:
         kept = Arkaq.load(path)
-        for name in ("vigilance", "seed", "learning"):
+        for name in ("vigilance", "seed", "learning", "sensing"):
             if getattr(kept, name) != getattr(self, name):
                 raise ValueError(
                     f"checkpoint {path} holds a run with another {name}: "
                     f"{getattr(kept, name)!r}, not {getattr(self, name)!r}"
                 )
-        if kept.sensing.to_json() != self.sensing.to_json():
-            raise ValueError(f"checkpoint {path} holds a run with another sensing")
         for name in ("art", "q", "history", "cycles", "_phase", "_done_in_phase"):
             setattr(self, name, getattr(kept, name))
 
@@ -382,6 +384,7 @@ class _Segmentation(_Phase):
     """Figure 5.6: random actions; every sighting is a pattern for the network."""
 
     name, number, unit = _SEGMENTING, 0, " patterns"
+    blind = 0
 
     @property
     def total(self) -> int:
@@ -392,7 +395,7 @@ class _Segmentation(_Phase):
             {
                 "supervisor": self.supervisor,
                 "observe": self.observe,
-                "unknown": lambda: "ask for reset",
+                "unknown": self.unknown,
                 "network": self.network,
                 "act": self.act,
             }
@@ -401,7 +404,15 @@ class _Segmentation(_Phase):
     def observe(self) -> str:
         return "ball seen" if self.observation[-1] else "no ball"
 
+    def unknown(self) -> str:
+        """Give a blind robot up, for it would ask for resets for ever."""
+        self.blind += 1
+        if self.blind == _MOST_BLIND_LOOKS:
+            raise RuntimeError(f"the ball was not seen in {self.blind} looks in a row")
+        return "ask for reset"
+
     def network(self) -> str:
+        self.blind = 0
         art = self.agent.art
         known = art.n_clusters_ if art.__sklearn_is_fitted__() else 0
         art.learn_one(self.pattern)

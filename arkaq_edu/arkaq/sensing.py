@@ -13,7 +13,7 @@ from arkaq_edu import _checks
 from arkaq_edu.kalman import KalmanFilter, constant_velocity
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Sensing:
     """What the agent assumes of its senses.
 
@@ -53,6 +53,14 @@ class Sensing:
             raise ValueError(f"high must be above low, got {self.low!r} and {self.high!r}")
         _checks.number("range_noise", self.range_noise, 0)
         self.filter()
+
+    def __eq__(self, other: object) -> bool:
+        """Compare by value; arrays and lists of the same numbers are equal."""
+        return isinstance(other, Sensing) and self.to_json() == other.to_json()
+
+    def __hash__(self) -> int:
+        """Hash by value."""
+        return hash(str(self.to_json()))
 
     @classmethod
     def thesis(cls) -> Sensing:

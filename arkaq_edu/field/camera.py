@@ -250,8 +250,8 @@ class Camera:
         picture from 300 mm to the far wall.
     min_pixels : int
         The smallest blob that counts as a ball. Smaller ones are what a colour table takes for
-        a ball by mistake. It is what limits how far the robot sees: a ball at 4,100 mm covers
-        about 12 pixels.
+        a ball by mistake. It limits how far the robot sees: a ball at 4,100 mm covers about
+        12 pixels, and sightings begin to drop out from 4,300 mm on.
 
     Notes
     -----
