@@ -22,7 +22,7 @@ from .scene import Cells, Layer, Line, Panel, Points, Scene, Text
 #: Norms of r between which the surface changes its shade.
 LEVELS = (0.75, 0.8, 0.85, 0.9, 0.95)
 #: Where the picture ends; learning must end at 1.
-_FAR = 1.5
+_FAR, _WIDE = 1.5, 1.85  # of the curves, and with room for words
 _SLIDER = {"width": "min(100%, 36em)"}
 
 
@@ -84,24 +84,25 @@ def _from_above(c: float, d: float, vigilance: float) -> Panel:
         np.column_stack([np.append(cdz, cdz[::-1]), np.append(low, high[::-1])])
         for low, high in pairwise(borders)
     ]
-    at = 1.3
-    heights = {level: float(reset_cosine(level, at, c)) for level in LEVELS}
     limit = reset_cosine(vigilance, cdz, c)
     seen = limit > 0
     seen[:-1] |= seen[1:]  # the line begins on the axis
     layers: list[Layer] = [
         Cells(bands, range(len(bands))[::-1], (0, _FAR, 0, 1)),
-        *(Text(at, y - 0.03, f"{level:g}", style.QUIET) for level, y in heights.items() if y > 0.1),
         *_learned(c, d, (0, 1)),
         Line(cdz[seen], limit[seen], style.OURS, 2.5),
     ]
+    for level, border in zip(LEVELS, borders[1:-1], strict=True):
+        if border[-1] > 0:
+            layers.append(Text(1.03 * _FAR, float(border[-1]), f"norm {level:g}"))
     end = learned_norm(c, d)
     cosine = float(reset_cosine(vigilance, end, c))
     if end <= 1 and cosine > 0:
         layers.append(Points([end], [cosine], 5.0, style.OURS))
     return Panel(
-        "norm of c d z_J; reset below the thick line", "cos(u, z_J)", (0, _FAR), (0, 1), layers
-    )
+        "norm of c d z_J; reset below the thick line", "cos(u, z_J)", (0, _WIDE), (0, 1), layers,
+        xticks=[0, 0.5, 1, 1.5],
+    )  # fmt: skip
 
 
 def _curves(c: float, d: float, vigilance: float) -> Panel:
@@ -114,7 +115,7 @@ def _curves(c: float, d: float, vigilance: float) -> Panel:
         layers.append(Text(1.03 * _FAR, float(match_norm(cosine, _FAR, c)), name))
     layers.append(Line([0, _FAR], [vigilance, vigilance], style.OURS, 2.5))
     return Panel(
-        "norm of c d z_J; thick: vigilance", "norm of r", (0, 1.22 * _FAR), (0.7, 1.02), layers,
+        "norm of c d z_J; thick: vigilance", "norm of r", (0, _WIDE), (0.7, 1.02), layers,
         xticks=[0, 0.5, 1, 1.5],
     )  # fmt: skip
 
