@@ -292,9 +292,9 @@ class ART2(Categories):
     a, b : float > 0, default=10
         Strength of the feedback from `u` to `w` and from `q` to `v`; 10 is usual.
     c : float in (0, 1), default=0.1
-        Share of `p` in `r`. ``c d / (1 - d)`` must not exceed 1, or else a match could become a
-        mismatch in the course of learning. The thesis prints c < 0, with which a perfect match
-        does not give norm 1.
+        Share of `p` in `r`. ``c d / (1 - d)`` must not exceed 1: soon beyond it the norm
+        of `r` rises again as a category learns, and a mismatch could become a match. The thesis
+        prints c < 0, with which a perfect match does not give norm 1.
     d : float in (0, 1), default=0.9
         Activity of the chosen node of F2.
     theta : float in [0, 1) or None, default=None
