@@ -59,10 +59,13 @@ def test_watch_films_the_courses_own_agent(run, tmp_path):
         (["watch", "no.npz"], "does not exist"),
         (["watch", "--distance", "1e9"], "distance must be"),
         (["watch", "--out", "walk.txt"], ".gif"),
+        (["watch", "begun.npz"], "agent must have learned"),
+        (["reproduce", "--jobs", "0"], "jobs must be"),
         (["reproduce", "--seeds", "0"], "--seeds"),
     ],
 )
 def test_bad_input_gets_one_line_and_status_two(run, words, hint):
+    Arkaq(rng=0).save("begun.npz")
     answer = run(*words)
     assert answer.exit_code == 2
     assert len(answer.output.splitlines()) == 1

@@ -22,7 +22,14 @@ __getattr__, __dir__, __all__ = _lazy.attach(
             "train",
             "walk",
         ],
-        "reproduce": ["mean_nis", "results", "summary", "thesis_numbers"],
+        "reproduce": [
+            "agent_file",
+            "load_study",
+            "mean_nis",
+            "results",
+            "summary",
+            "thesis_numbers",
+        ],
         "streams": ["calibrate", "count_centers", "load_sightings", "patterns", "record_sightings"],
     },
 )

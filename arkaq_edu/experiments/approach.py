@@ -238,6 +238,11 @@ def walk(agent: Arkaq, distance: float, orientation: float, seed: int = 0) -> Wa
     -------
     Walk
 
+    Raises
+    ------
+    ValueError
+        If the agent has not finished segmenting, or the place is out of range.
+
     References
     ----------
     Thesis figures 5.17-5.30.
@@ -248,6 +253,8 @@ def walk(agent: Arkaq, distance: float, orientation: float, seed: int = 0) -> Wa
     >>> way.is_success, bool(way.table.distance.iloc[-1] < 500)
     (True, True)
     """
+    if agent.q is None:
+        raise ValueError("agent must have learned: train it in the same file to go on")
     env = gymnasium.make("arkaq_edu:BallApproach-v0")
     observation, info = env.reset(
         seed=seed, options={"distance": distance, "orientation": orientation}

@@ -32,6 +32,28 @@ def thesis_numbers() -> pd.Series:
     return pd.read_csv(data_file("thesis.csv"), index_col="quantity").thesis
 
 
+def load_study() -> pd.DataFrame:
+    """Return the study kept with the course: ``results()`` over twenty seeds.
+
+    Examples
+    --------
+    >>> int(load_study().seeds.min())
+    20
+    """
+    return pd.read_csv(data_file("approach_study.csv"))
+
+
+def agent_file(folder: str | os.PathLike[str], sensing: str, seed: int) -> Path:
+    """Return where `results` keeps one of its agents.
+
+    Examples
+    --------
+    >>> agent_file("out", "thesis", 3).as_posix()
+    'out/agents/ball-thesis-seed03.npz'
+    """
+    return Path(folder) / "agents" / f"ball-{sensing}-seed{seed:02d}.npz"
+
+
 def results(
     seeds: int = 20,
     approaches: int = 500,
@@ -80,6 +102,8 @@ def results(
     ['quantity', 'thesis', 'mean', 'low', 'high', 'seeds']
     """
     numbers = range(_checks.integer("seeds", seeds, 1))
+    if jobs == 0:
+        raise ValueError("jobs must be a number of processes, or -1 for one a core, got 0")
     tasks: list[Any] = []
     for seed in numbers:
         tasks += [delayed(_stream)(seed), delayed(_references)(seed, approaches)]
@@ -202,7 +226,7 @@ def _training(
 ) -> tuple[int, dict[str, float]]:
     checkpoint = None
     if folder is not None:
-        checkpoint = Path(folder) / "agents" / f"ball-{sensing}-seed{seed:02d}.npz"
+        checkpoint = agent_file(folder, sensing, seed)
         checkpoint.parent.mkdir(parents=True, exist_ok=True)
     agent = approach.train(
         seed,

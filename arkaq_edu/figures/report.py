@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import html
+import inspect
 import io
 import os
 from collections.abc import Callable, Mapping
@@ -38,7 +39,8 @@ figcaption { color: #555; font-size: .9rem; }
 <p>$summary</p>
 <h2>Numbers</h2>
 $table
-<p>Mean, lowest and highest over the seeds. A dash: the thesis prints no such number.</p>
+<p>Mean, lowest and highest over the seeds. The way walked is that of the
+walks which arrived. A dash: the thesis prints no such number.</p>
 <h2>Figures</h2>
 <div class="figures">
 $figures
@@ -56,7 +58,8 @@ _FIGURE = Template("""<figure id="figure-$number">
 def write_report(
     folder: str | os.PathLike[str],
     results: pd.DataFrame,
-    figures: Mapping[str, Callable[[], object]],
+    figures: Mapping[str, Callable[..., object]],
+    **options: object,
 ) -> Path:
     """Write ``results.csv`` and ``index.html``, each whole or not at all.
 
@@ -69,6 +72,8 @@ def write_report(
     figures : mapping of str to function
         For each figure's number a function that draws it on the current axes; the first line of
         its docstring becomes the caption.
+    **options
+        Passed to every figure that takes an argument of that name, such as ``agent``.
 
     Returns
     -------
@@ -93,9 +98,10 @@ def write_report(
     for name in ("thesis", "mean", "low", "high"):
         text[name] = [_number(value) for value in results[name]]
     page = _PAGE.substitute(
-        summary=f"Every quantity was measured with {seeds} seed{'s' if seeds > 1 else ''}.",
+        summary=f"Every quantity was measured with {seeds} seed{'s' if seeds > 1 else ''}; "
+        "the figures show what came of the first.",
         table=text.to_html(index=False, border=0),
-        figures="\n".join(_figure(number, draw) for number, draw in figures.items()),
+        figures="\n".join(_figure(number, draw, options) for number, draw in figures.items()),
         version=__version__,
     )
     _replace(folder / "index.html", page)
@@ -109,10 +115,11 @@ def _number(value: float) -> str:
     return f"{value:.0f}" if abs(value) >= 100 or value == round(value) else f"{value:#.3g}"
 
 
-def _figure(number: str, draw: Callable[[], object]) -> str:
+def _figure(number: str, draw: Callable[..., object], options: Mapping[str, object]) -> str:
     import matplotlib.pyplot as plt
 
-    draw()
+    taken = inspect.signature(draw).parameters
+    draw(**{name: value for name, value in options.items() if name in taken})
     buffer = io.BytesIO()
     plt.gcf().savefig(buffer, format="png", dpi=110, bbox_inches="tight")
     plt.close("all")
@@ -121,7 +128,7 @@ def _figure(number: str, draw: Callable[[], object]) -> str:
     return _FIGURE.substitute(number=number, caption=caption, png=png)
 
 
-def _caption(number: str, draw: Callable[[], object]) -> str:
+def _caption(number: str, draw: Callable[..., object]) -> str:
     """Make a caption of a docstring such as "Draw figure 5.6, the automaton; see `plot`."."""
     line = (draw.__doc__ or "").strip().splitlines()[0]
     said = line.removeprefix(f"Draw figure {number}").lstrip(",: ").split("; see ")[0].rstrip(".")
