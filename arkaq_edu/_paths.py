@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import filecmp
+import json
 import os
-import shutil
+import re
 from pathlib import Path
 
 FIRST_PAGE = "00_start_here.ipynb"
+_SOLUTION = re.compile(r"^( *)### BEGIN SOLUTION\n.*?^ *### END SOLUTION", re.MULTILINE | re.DOTALL)
 
 
 def in_repository() -> bool:
@@ -65,6 +66,8 @@ def data_file(name: str) -> Path:
 def copy_course(folder: Path | str) -> tuple[list[Path], list[Path]]:
     """Copy the course into `folder`, and never over anything that is there already.
 
+    The exercises are left open: their solutions, and what the checks said to them, stay behind.
+
     Parameters
     ----------
     folder : path
@@ -92,12 +95,37 @@ def copy_course(folder: Path | str) -> tuple[list[Path], list[Path]]:
     for file in [*_files(source / "notebooks"), *_files(source / "data")]:
         name = file.relative_to(source)
         target = Path(folder) / name
+        content = without_solutions(file) if file.suffix == ".ipynb" else file.read_bytes()
         if not os.path.lexists(target):
-            _copy_whole(file, target)
+            _write_whole(content, target)
             copied.append(name)
-        elif not target.is_file() or not filecmp.cmp(file, target, shallow=False):
+        elif not target.is_file() or target.read_bytes() != content:
             kept.append(name)
     return copied, kept
+
+
+def without_solutions(notebook: Path) -> bytes:
+    """Return a notebook with its exercises open, as a student gets it.
+
+    Examples
+    --------
+    >>> page = without_solutions(course_folder() / "notebooks" / "05_kalman_filter.ipynb")
+    >>> b"SOLUTION" in page, b"raise NotImplementedError" in page
+    (False, True)
+    """
+    pages = json.loads(notebook.read_text(encoding="utf-8"))
+    for cell in pages["cells"]:
+        marks = cell["metadata"].get("nbgrader", {})
+        if marks.get("solution"):
+            open_answer = _SOLUTION.sub(
+                r"\1# your answer, in place of this line and the next\n"
+                r"\1raise NotImplementedError",
+                "".join(cell["source"]),
+            )
+            cell["source"] = open_answer.splitlines(keepends=True)
+        if marks.get("grade"):
+            cell["outputs"], cell["execution_count"] = [], None
+    return (json.dumps(pages, indent=1, ensure_ascii=False) + "\n").encode()
 
 
 def _files(folder: Path) -> list[Path]:
@@ -111,12 +139,12 @@ def _files(folder: Path) -> list[Path]:
     ]
 
 
-def _copy_whole(source: Path, target: Path) -> None:
-    """Copy a file so that, interrupted, it leaves no half of it under the name of `target`."""
+def _write_whole(content: bytes, target: Path) -> None:
+    """Write a file so that, interrupted, it leaves no half of it under the name of `target`."""
     target.parent.mkdir(parents=True, exist_ok=True)
     part = target.with_name(target.name + ".part")
     try:
-        shutil.copyfile(source, part)
+        part.write_bytes(content)
         part.rename(target)
     finally:
         part.unlink(missing_ok=True)

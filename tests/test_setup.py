@@ -15,6 +15,7 @@ import zipfile
 from pathlib import Path
 
 import click
+import nbformat
 import pytest
 from click.testing import CliRunner
 from packaging.requirements import Requirement
@@ -213,7 +214,8 @@ def test_the_wheel_carries_the_course_and_gives_a_student_a_copy(wheel, tmp_path
         mine = _paths._files(ROOT / part)
         theirs = _paths._files(copy / part)
         assert [p.relative_to(ROOT) for p in mine] == [p.relative_to(copy) for p in theirs]
-        assert [p.read_bytes() for p in mine] == [p.read_bytes() for p in theirs]
+        for own, copied in zip(mine, theirs, strict=True):
+            assert own.suffix == ".ipynb" or own.read_bytes() == copied.read_bytes()
     assert (copy / "notebooks" / _paths.FIRST_PAGE).exists()
     assert not list(copy.rglob("*.py"))
     assert list(wheel.glob("*.data/data/share/jupyter/lab/settings/overrides.d/arkaq_edu.json"))
@@ -244,12 +246,36 @@ def test_a_students_work_is_never_written_over(tmp_path):
     assert first.read_bytes() == whole
 
 
+def test_a_student_gets_the_exercises_open_and_all_else_as_it_is(tmp_path):
+    run("lab", tmp_path, "--copy-only")
+    exercises = 0
+    for master in sorted((ROOT / "notebooks").glob("*.ipynb")):
+        cells = nbformat.read(master, as_version=4).cells
+        copied = nbformat.read(tmp_path / "notebooks" / master.name, as_version=4).cells
+        for mine, theirs in zip(cells, copied, strict=True):
+            marks = mine.metadata.get("nbgrader", {})
+            if marks.get("solution"):
+                exercises += 1
+                head, rest = mine.source.split("### BEGIN SOLUTION")
+                solution, tail = rest.split("### END SOLUTION")
+                assert theirs.source.startswith(head) and theirs.source.endswith(tail)
+                assert "NotImplementedError" in theirs.source
+                assert solution.strip() not in theirs.source
+                ast.parse(theirs.source)
+            elif marks.get("grade"):
+                assert mine.outputs and not theirs.outputs
+                assert mine.source == theirs.source
+            else:
+                assert mine == theirs
+    assert exercises >= 12
+
+
 def test_an_interrupted_copy_leaves_no_half_of_a_file(tmp_path, monkeypatch):
-    def stop_halfway(source, target):
-        Path(target).write_text("half")
+    def stop_halfway(path, content):
+        path.write_text("half")
         raise OSError("No space left on device")
 
-    monkeypatch.setattr(shutil, "copyfile", stop_halfway)
+    monkeypatch.setattr(Path, "write_bytes", stop_halfway)
     answer = run("lab", tmp_path, "--copy-only")
     assert (answer.exit_code, answer.output) == (2, "arkaq: error: No space left on device\n")
     assert [p for p in tmp_path.rglob("*") if p.is_file()] == []

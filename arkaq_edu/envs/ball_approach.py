@@ -142,9 +142,9 @@ class BallApproachEnv(gymnasium.Env[np.ndarray, int]):
 
     def step(self, action: int) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """Take one footstep cycle."""
-        if not 0 <= action < len(FOOTSTEPS):
+        if action not in (0, 1, 2):
             raise ValueError(f"action must be 0, 1 or 2, got {action!r}")
-        self.world.cycle(*FOOTSTEPS[action])
+        self.world.cycle(*FOOTSTEPS[int(action)])
         self.trail.append(self.world.pose[:2])
         observation = self._observe()
         verdict = self.supervisor.judge(self.world)
