@@ -1,5 +1,6 @@
 """The map of categories: its cells, its colours, its measures, and the figures drawn of it."""
 
+import copy
 import itertools
 
 import matplotlib.pyplot as plt
@@ -12,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.path import Path as Polygon
 from stand_in import triangle_stream
 
+from arkaq_edu.art import ART2A, EuclideanART
 from arkaq_edu.figures import FIGURES as GALLERY
 from arkaq_edu.figures import distance, segmentation, style
 
@@ -109,6 +111,53 @@ def test_a_figure_makes_its_own_axes_and_shows_nothing(monkeypatch):
     plt.close(plot.ax.figure)
     segmentation.figure_5_10(Figure().subplots())
     assert plt.get_fignums() == before
+
+
+@pytest.mark.parametrize("order", segmentation.ORDERS)
+def test_an_order_loses_no_pattern_and_is_always_the_same(order):
+    patterns = triangle_stream(300)
+    ordered = segmentation.in_order(patterns, order)
+    assert sorted(ordered.tolist()) == sorted(patterns.tolist())
+    assert (ordered == segmentation.in_order(patterns, order)).all()
+    assert (ordered == patterns).all() == (order == "as recorded")
+    assert (np.diff(ordered[:, 0]) >= 0).all() == (order == "sorted by distance")
+
+
+def test_an_unknown_order_is_refused():
+    with pytest.raises(ValueError, match=r"order must be one of .*got 'backwards'"):
+        segmentation.in_order([[0, 0]], "backwards")
+
+
+@pytest.mark.parametrize("rate", [0.1, 0.6, 1.0])
+@pytest.mark.parametrize(
+    ("method", "vigilance"),
+    [(EuclideanART, 0.1), (EuclideanART, 0.4), (ART2A, 0.6), (ART2A, 0.98)],
+)
+def test_a_recognised_pattern_is_one_that_founds_nothing(method, vigilance, rate):
+    network = method(vigilance, rate).fit(triangle_stream(300))
+    asked = np.vstack([scattered(150, seed=3), [[0.0, 0.0]]])
+    founds = []
+    for pattern in asked:
+        twin = copy.deepcopy(network).partial_fit([pattern])
+        founds.append(twin.n_clusters_ > network.n_clusters_ or twin.labels_[0] == -1)
+    assert segmentation.coverage(network, asked) == pytest.approx(1 - np.mean(founds))
+
+
+@given(st.integers(1, 80), st.integers(1, 9), st.integers(0, 10**6))
+def test_the_quantisation_error_is_the_spread_about_the_means(n, k, seed):
+    rng = np.random.default_rng(seed)
+    places, labels = rng.normal(0, 100, (n, 2)), rng.integers(-1, k, n)
+    squares = sum(
+        ((places[labels == label] - places[labels == label].mean(axis=0)) ** 2).sum()
+        for label in set(labels.tolist())
+    )
+    assert segmentation.quantisation_error(places, labels) == pytest.approx((squares / n) ** 0.5)
+
+
+@pytest.mark.parametrize(("places", "labels"), [([[0.0]], [0, 1]), ([0.0, 1.0], [0, 1])])
+def test_the_quantisation_error_wants_a_label_a_place(places, labels):
+    with pytest.raises(ValueError, match=r"(labels|places) must"):
+        segmentation.quantisation_error(places, labels)
 
 
 @pytest.mark.parametrize("number", ["4.1", "4.2", "5.9"])

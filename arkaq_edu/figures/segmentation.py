@@ -46,6 +46,9 @@ LEARNING_RATE = Learning().learning_rate
 #: advise: a template that swings leaves directions behind it, where others are founded.
 ANGULAR_RATE = 0.1
 
+#: In which order a stream may be presented.
+ORDERS = ("as recorded", "shuffled", "sorted by distance")
+
 #: What the scaled interval from -1 to 1 stands for.
 SENSING = Sensing.thesis()
 DISTANCE, ORIENTATION = zip(SENSING.low, SENSING.high, strict=True)
@@ -81,6 +84,107 @@ def recorded_patterns() -> NDArray[np.float64]:
     from ..experiments import streams  # brings the whole field with it
 
     return streams.patterns(streams.load_sightings())
+
+
+def in_order(patterns: ArrayLike, order: str) -> NDArray[np.float64]:
+    """Return the same patterns in another order.
+
+    Parameters
+    ----------
+    patterns : array_like, shape (n, 2)
+        Scaled distance and orientation, as recorded.
+    order : str
+        One of `ORDERS`: "as recorded"; "shuffled", always in the same way; "sorted by distance",
+        the nearest ball first.
+
+    Returns
+    -------
+    array, shape (n, 2)
+
+    Raises
+    ------
+    ValueError
+        For another order, or patterns of the wrong shape.
+
+    Examples
+    --------
+    >>> in_order([[0.5, 0.1], [-0.5, 0.2]], "sorted by distance")
+    array([[-0.5,  0.2],
+           [ 0.5,  0.1]])
+    """
+    patterns = _checks.array("patterns", patterns, (None, 2))
+    if order not in ORDERS:
+        raise ValueError(f"order must be one of {ORDERS}, got {order!r}")
+    if order == "shuffled":
+        return np.random.default_rng(0).permutation(patterns)
+    return patterns[np.argsort(patterns[:, 0], kind="stable")] if order == ORDERS[2] else patterns
+
+
+def coverage(network: ART2A | EuclideanART, patterns: ArrayLike) -> float:
+    """Return the share of patterns that a fitted network recognises.
+
+    A pattern is recognised if it would found no category: its category is within the vigilance.
+    Even a pattern that was learned may be lost, because centres move on.
+
+    Parameters
+    ----------
+    network : ART2A or EuclideanART
+        Fitted; it learns nothing here.
+    patterns : array_like, shape (n, m)
+        Patterns, learned or not.
+
+    Returns
+    -------
+    float in [0, 1]
+
+    References
+    ----------
+    Thesis, sections 4.2.1 and 4.2.2: cosine > vigilance; distance < vigilance.
+
+    Examples
+    --------
+    >>> network = EuclideanART(0.5).fit([[0.0, 0.0], [1.0, 0.0]])
+    >>> coverage(network, [[0.1, 0.0], [0.5, 0.5], [1.0, 0.2], [1.0, 0.0]])
+    0.75
+    """
+    patterns = np.asarray(patterns, dtype=float)
+    own = network.cluster_centers_[network.predict(patterns)]
+    if isinstance(network, ART2A):
+        norms = np.linalg.norm(patterns, axis=1)
+        recognised = (own * patterns).sum(axis=1) > network.vigilance * norms
+    else:
+        recognised = np.linalg.norm(patterns - own, axis=1) < network.vigilance
+    return float(recognised.mean())
+
+
+def quantisation_error(places: ArrayLike, labels: ArrayLike) -> float:
+    """Return how far places are, root mean square, from the mean place of their category.
+
+    It is the error of the best guess of the place that can be made from the category alone.
+
+    Parameters
+    ----------
+    places : array_like, shape (n, m)
+        In any unit, n >= 1.
+    labels : array_like, shape (n,)
+        The category of each.
+
+    Returns
+    -------
+    float
+        In the unit of `places`.
+
+    Examples
+    --------
+    >>> quantisation_error([[100.0], [300.0], [1000.0], [1200.0]], [0, 0, 1, 1])
+    100.0
+    """
+    places = _checks.array("places", places, (None, None))
+    labels = _checks.array("labels", labels, (len(places),))
+    _, category, sizes = np.unique(labels, return_inverse=True, return_counts=True)
+    sums = [np.bincount(category, weights=column) for column in places.T]
+    means = np.column_stack(sums) / sizes[:, None]
+    return float(np.sqrt(((places - means[category]) ** 2).sum(axis=1).mean()))
 
 
 def in_view(patterns: ArrayLike) -> NDArray[np.float64]:

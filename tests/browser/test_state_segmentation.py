@@ -5,7 +5,7 @@ import re
 from playwright.sync_api import expect
 
 NOTEBOOK = "07_state_segmentation.ipynb"
-FACT = re.compile(r"^(\d+) categories at vigilance ([\d.]+), the thesis printed")
+FACT = re.compile(r"^(\d+) categories at vigilance ([\d.]+?)[,;]")
 
 OUTPUTS = """() => {
     const { model } = window.jupyterapp.shell.currentWidget.content;
@@ -20,6 +20,12 @@ def fact(canvas):
     return int(count), float(vigilance)
 
 
+def slider_of(page, name):
+    """The visible slider of that name, and the number beside it."""
+    row = page.locator(".widget-hslider", has_text=name).filter(visible=True)
+    return row.get_by_role("slider"), row.locator(".widget-readout")
+
+
 def picture(canvas):
     return canvas.evaluate("(canvas) => canvas.toDataURL()")
 
@@ -30,26 +36,39 @@ def test_runs_and_follows_the_keyboard(open_notebook):
 
     canvas = page.get_by_role("img", name=FACT)
     expect(canvas).to_be_visible()
-    slider = page.get_by_role("slider")
+    slider, readout = slider_of(page, "vigilance")
     slider.focus()
     (first_count, vigilance), drawn = fact(canvas), picture(canvas)
     for key, step in [("ArrowLeft", -0.005), ("ArrowLeft", -0.005), ("PageDown", None)]:
         slider.press(key)
-        expect(canvas).not_to_have_attribute("aria-label", re.compile(f"vigilance {vigilance:g},"))
+        expect(canvas).not_to_have_attribute(
+            "aria-label", re.compile(f"vigilance {vigilance:g}[,;]")
+        )
         (count, new_vigilance), new_picture = fact(canvas), picture(canvas)
         assert count > first_count and new_vigilance < vigilance
         assert step is None or abs(new_vigilance - vigilance - step) < 1e-9
         assert new_picture != drawn
         vigilance, drawn = new_vigilance, new_picture
-    readout = page.locator(".widget-readout").inner_text()
-    assert float(readout) == vigilance
+    assert float(readout.inner_text()) == vigilance
+
+    page.get_by_label("method").select_option("angular")
+    expect(canvas).to_have_attribute("aria-label", re.compile(r"vigilance 0\.95, a cosine"))
+    assert picture(canvas) != drawn
+    slider, readout = slider_of(page, "vigilance")
+    slider.press("ArrowLeft")
+    expect(canvas).to_have_attribute("aria-label", re.compile(r"vigilance 0\.94, a cosine"))
+    assert float(readout.inner_text()) == 0.94
+    page.get_by_label("method").select_option("Euclidean")
+    expect(canvas).to_have_attribute("aria-label", re.compile(f"vigilance {vigilance:g}[,;]"))
+    page.get_by_label("order").select_option("sorted by distance")
+    expect(canvas).not_to_have_attribute("aria-label", re.compile(f"^{count} categories"))
     assert page.get_by_role("alert").filter(visible=True).count() == 0
     assert BROKEN.search(page.inner_text("body")) is None
 
 
 def test_fits_the_window_and_the_screen(open_notebook):
     page = open_notebook(NOTEBOOK, viewport={"width": 1280, "height": 900}, device_scale_factor=2)
-    canvas, slider = page.get_by_role("img", name=FACT), page.get_by_role("slider")
+    canvas, (slider, _) = page.get_by_role("img", name=FACT), slider_of(page, "vigilance")
     expect(canvas).to_be_visible()
     wide, output = canvas.bounding_box(), page.locator(".jp-OutputArea", has=canvas).bounding_box()
     assert canvas.evaluate("(canvas) => [canvas.width, canvas.height]") == [
@@ -58,7 +77,7 @@ def test_fits_the_window_and_the_screen(open_notebook):
     ]
 
     slider.press("Home")
-    expect(canvas).to_have_attribute("aria-label", re.compile(r"vigilance 0\.025,"))
+    expect(canvas).to_have_attribute("aria-label", re.compile(r"vigilance 0\.025[,;]"))
     after = page.locator(".jp-OutputArea", has=canvas).bounding_box()
     assert (after["width"], after["height"]) == (output["width"], output["height"])
     moved = canvas.bounding_box()["y"] - after["y"] - (wide["y"] - output["y"])
