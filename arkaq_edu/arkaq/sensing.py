@@ -180,9 +180,6 @@ class Estimator:
         self.kalman = self.sensing.filter()
         B = self.sensing.B
         self._inputs = None if B is None else np.eye(np.asarray(B).shape[1])
-        self._m = len(self.sensing.low)
-        self._middle = self.sensing.unscale(np.zeros(self._m))
-        self._half = np.asarray(self.sensing.high) - self._middle
 
     def reset(self) -> None:
         """Forget: the supervisor has moved the ball."""
@@ -203,5 +200,4 @@ class Estimator:
         if observation[-1]:
             z = observation[:-1].astype(np.float64)
             self.kalman.update(z, self.sensing.noise(z) if self.sensing.range_noise else None)
-        scaled = (self.kalman.x[: self._m] - self._middle) / self._half
-        return np.minimum(np.maximum(scaled, -1.0), 1.0)
+        return self.sensing.scale(self.kalman.x[: len(self.sensing.low)])
