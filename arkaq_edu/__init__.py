@@ -4,7 +4,7 @@ Units everywhere: millimetres, radians, seconds, grams. Orientation is positive 
 
 The rooms of the house, from the ground up (a room imports only from those before it):
 
-- `kalman`, `art`, `mdp`: the methods, from scratch;
+- `kalman`, `art`, `mdp`, `pomdp`: the methods, from scratch;
 - `field`: the football field, the ball, the legged robot and its camera;
 - `arkaq`: the agent, made of a world model and a policy;
 - `envs`: the tasks as Gymnasium environments;
@@ -22,13 +22,14 @@ __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
     submodules=[
         "arkaq", "art", "cli", "envs", "exercises", "experiments", "field", "figures", "kalman",
-        "mdp", "widgets",
+        "mdp", "pomdp", "widgets",
     ],
     submod_attrs={
         "arkaq": ["Arkaq"],
         "art": ["ART1", "ART2", "ART2A", "EuclideanART"],
         "kalman": ["KalmanFilter", "constant_velocity", "kalman_batch"],
         "mdp": ["MDP", "QLearner", "value_iteration"],
+        "pomdp": ["POMDP", "belief_update"],
     },
 )  # fmt: skip
 

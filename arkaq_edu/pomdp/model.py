@@ -1,0 +1,119 @@
+"""A partially observable Markov decision process: an MDP that is seen only through hints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from numpy.typing import ArrayLike
+
+from arkaq_edu._checks import array, distribution
+from arkaq_edu.mdp.model import MDP
+
+
+class POMDP:
+    """A POMDP <S, A, T, R, Omega, O>, with the discount rate that weighs its future.
+
+    Parameters
+    ----------
+    T : array_like, shape (A, S, S)
+        ``T[a, s, t]`` is the probability that action `a` leads from state `s` to state `t`.
+    O : array_like, shape (A, S, Z)
+        ``O[a, t, z]`` is the probability of observing `z` when action `a` has led to state `t`.
+    R : array_like, shape (S, A)
+        ``R[s, a]`` is the reward expected for action `a` in state `s`.
+    gamma : float
+        The discount rate, in [0, 1).
+    start : array_like, shape (S,), optional
+        The belief at the start; without it all states are equally likely.
+    states, actions, observations : sequence of str, optional
+        Their names; by default they are called "0", "1", ...
+
+    Attributes
+    ----------
+    mdp : MDP
+        The world behind the observations, for one who sees its states.
+    T, O, R, start : ndarray
+        As given; they cannot be written to.
+    gamma : float
+    n_states, n_actions, n_observations : int
+    states, actions, observations : tuple of str
+
+    Raises
+    ------
+    ValueError
+        If a shape does not fit, an entry is not finite, a row of `T` or `O` is no distribution,
+        `gamma` is outside [0, 1), or the names are not as many as needed, or not all different.
+
+    Notes
+    -----
+    `O` holds distributions over observations, one for each action and state it led to. The thesis
+    (2.3) calls it a set of distributions over states, and lets the history on which the action A_t
+    is chosen hold A_t itself; it ends with the observation O_t.
+
+    References
+    ----------
+    Thesis 2.3 (figure 2.5). L. Kaelbling, M. Littman, A. Cassandra, "Planning and acting in
+    partially observable stochastic domains", Artificial Intelligence 101, 1998.
+
+    Examples
+    --------
+    The ball is left or right of the robot. Looking says where, and errs in one of ten cases.
+
+    >>> stay = [[1, 0], [0, 1]]
+    >>> pomdp = POMDP(T=[stay], O=[[[0.9, 0.1], [0.1, 0.9]]], R=[[0], [0]], gamma=0.9,
+    ...               states=["left", "right"], actions=["look"])
+    >>> pomdp
+    POMDP(2 states, 1 action, 2 observations, gamma=0.9)
+    >>> pomdp.states, pomdp.observations
+    (('left', 'right'), ('0', '1'))
+    """
+
+    def __init__(
+        self,
+        T: ArrayLike,
+        O: ArrayLike,  # noqa: E741  (the thesis's letter)
+        R: ArrayLike,
+        gamma: float,
+        start: ArrayLike | None = None,
+        *,
+        states: Sequence[str] | None = None,
+        actions: Sequence[str] | None = None,
+        observations: Sequence[str] | None = None,
+    ) -> None:
+        self.mdp = MDP(T, R, gamma, start)
+        self.T, self.R, self.start = self.mdp.T, self.mdp.R, self.mdp.start
+        self.gamma = self.mdp.gamma
+        self.n_states, self.n_actions = self.mdp.n_states, self.mdp.n_actions
+        O_of = array("O", O, (self.n_actions, self.n_states, None))
+        if not O_of.size:
+            raise ValueError(f"O must have shape (A, S, Z), none of them 0, got {O_of.shape}")
+        self.O = distribution("O", O_of).copy()
+        self.O.setflags(write=False)
+        self.n_observations = self.O.shape[2]
+        self.states = _names("states", states, self.n_states)
+        self.actions = _names("actions", actions, self.n_actions)
+        self.observations = _names("observations", observations, self.n_observations)
+
+    def __repr__(self) -> str:
+        counts = [
+            f"{n} {word}{'' if n == 1 else 's'}"
+            for n, word in (
+                (self.n_states, "state"),
+                (self.n_actions, "action"),
+                (self.n_observations, "observation"),
+            )
+        ]
+        return f"POMDP({', '.join(counts)}, gamma={self.gamma:g})"
+
+
+def _names(what: str, given: Sequence[str] | None, n: int) -> tuple[str, ...]:
+    """Return the names of n things, or refuse them."""
+    if given is None:
+        return tuple(map(str, range(n)))
+    names = tuple(given)
+    if len(names) != n or not all(isinstance(name, str) and name for name in names):
+        raise ValueError(f"{what} must be {n} names, got {given!r}")
+    if len(set(names)) < n:
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"{what} must be different names, got {twice!r} twice")
+    return names
