@@ -17,7 +17,7 @@ from stand_in import triangle_stream
 
 import arkaq_edu as ae
 from arkaq_edu.figures import segmentation
-from arkaq_edu.widgets import Explorer, vigilance, vigilance_explorer
+from arkaq_edu.widgets import Buttons, Explorer, vigilance, vigilance_explorer
 from arkaq_edu.widgets.scene import Cells, Line, Panel, Points, Scene, Text
 
 PATTERNS = triangle_stream(2000)
@@ -259,3 +259,23 @@ def test_matplotlib_and_the_canvas_agree_on_the_axes():
         assert axis.get_ticklocs() == pytest.approx([t[0] for t in ticks])
     assert (ax.get_xlim(), ax.get_ylim()) == ((0.5, -0.5), (10, 4000))
     assert ax.lines[0].get_markerfacecolor() == "none"
+
+
+def test_an_explorer_goes_step_by_step_with_buttons():
+    def draw(steps):
+        if steps.count("left") > 2:
+            raise ValueError("the wall")
+        return Scene(" ".join(steps) or "at the start", [])
+
+    explorer = Explorer(draw, steps=Buttons(["left", "right"]))
+    left, right, again = explorer.controls["steps"].children
+    assert repr(explorer) == "at the start"
+    for button in (left, right, left):
+        button.click()
+    assert repr(explorer) == "left right left"
+    left.click()
+    assert str(explorer.error) == "the wall"
+    again.click()
+    assert explorer.error is None and repr(explorer) == "at the start"
+    with pytest.raises(ValueError, match="'up'"):
+        explorer.controls["steps"].press("up")

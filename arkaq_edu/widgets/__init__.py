@@ -4,12 +4,13 @@ Every explorer is an `Explorer`: plain controls, a plain function from their val
 and one canvas that draws any scene.
 """
 
-from .explorer import CanvasView, Explorer
+from .explorer import Buttons, CanvasView, Explorer
 from .kalman import kalman_explorer
 from .resonance import letters_explorer, resonance_explorer
 from .vigilance import vigilance_explorer
 
 __all__ = [
+    "Buttons",
     "CanvasView",
     "Explorer",
     "kalman_explorer",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +38,65 @@ class CanvasView(anywidget.AnyWidget):
             self.scene, self.numbers = layout, numbers
 
 
+class Buttons(ipywidgets.HBox):
+    """A row of buttons that remember what was pressed, for an explorer that goes step by step.
+
+    Parameters
+    ----------
+    names : sequence of str
+        A button each.
+    start_again : str
+        The last button, which forgets all presses.
+    value : sequence of str
+        What has been pressed at first.
+
+    Attributes
+    ----------
+    value : tuple of str
+        The names pressed so far, in their order. Setting it is as good as pressing.
+
+    Raises
+    ------
+    ValueError
+        If a press is none of the names.
+
+    Examples
+    --------
+    >>> steps = Buttons(["left", "right"])
+    >>> steps.press("left")
+    >>> steps.press("right")
+    >>> steps.value
+    ('left', 'right')
+    >>> steps.press("start again")
+    >>> steps.value
+    ()
+    """
+
+    value = traitlets.Tuple()
+
+    def __init__(
+        self, names: Sequence[str], *, start_again: str = "start again", value: Sequence[str] = ()
+    ) -> None:
+        self.names, self.start_again = tuple(names), start_again
+        buttons = [ipywidgets.Button(description=name) for name in (*names, start_again)]
+        for button in buttons:
+            button.layout.width = "auto"
+            button.on_click(lambda pressed: self.press(pressed.description))
+        super().__init__(buttons, layout={"flex_flow": "row wrap"})
+        self.value = tuple(value)
+
+    def press(self, name: str) -> None:
+        """Do what a click on the button of that name does."""
+        self.value = () if name == self.start_again else (*self.value, name)
+
+    @traitlets.validate("value")
+    def _known(self, proposal: Any) -> tuple[str, ...]:
+        for name in proposal["value"]:
+            if name not in self.names:
+                raise ValueError(f"name must be one of {', '.join(self.names)}, got {name!r}")
+        return tuple(proposal["value"])
+
+
 class Explorer(ipywidgets.VBox):
     """Controls above a canvas that is drawn anew whenever one of them moves.
 
@@ -49,7 +108,7 @@ class Explorer(ipywidgets.VBox):
         Takes the values of the controls by name, returns a `Scene`. A plain function, so that it
         can be tested without a browser.
     **controls : ipywidgets widget
-        Widgets with a ``value``.
+        Widgets with a ``value``: sliders, menus, `Buttons`.
 
     Attributes
     ----------
@@ -73,7 +132,7 @@ class Explorer(ipywidgets.VBox):
     a dot at 7
     """
 
-    def __init__(self, draw: Callable[..., Scene], **controls: ipywidgets.ValueWidget) -> None:
+    def __init__(self, draw: Callable[..., Scene], **controls: ipywidgets.DOMWidget) -> None:
         self.view = CanvasView()
         self.controls = controls
         self.error: Exception | None = None
