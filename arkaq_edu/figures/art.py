@@ -18,24 +18,21 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PatchCollection
 from matplotlib.lines import Line2D
-from matplotlib.patches import Circle, FancyArrowPatch, FancyBboxPatch, Rectangle
-from matplotlib.path import Path
+from matplotlib.patches import Circle, Rectangle
 from matplotlib.text import Text
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _checks
 from ..art import match_norm
 from . import style
+from .diagram import Diagram, blank, box, frame, node, wire, words
 
 if TYPE_CHECKING:
     import pandas as pd
-
-Place = tuple[float, float]
 
 #: Letters of five by five points, row by row from the top.
 LETTERS = {
@@ -54,18 +51,6 @@ LETTERS = {
 
 #: Cosines between `u` and the expectation for which figure 2.21 draws a curve.
 COSINES = (1.0, 0.8, 0.6, 0.4, 0.2, 0.0)
-
-
-class Diagram(NamedTuple):
-    """What a diagram is made of: its parts, and its wires by (from, to)."""
-
-    ax: Axes
-    parts: dict[str, Text]
-    wires: dict[tuple[str, str], FancyArrowPatch]
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return self.ax.get_title(loc="left")
 
 
 class ResetPlot(NamedTuple):
@@ -108,7 +93,7 @@ class SettlingPlot(NamedTuple):
 
 def figure_2_18(ax: Axes | None = None) -> Diagram:
     """Draw figure 2.18, the two layers of an ART network and the traces between them."""
-    ax = _blank(
+    ax = blank(
         ax,
         "ART: every node of F1 is joined with every node of F2, both ways",
         (-5.2, 5.5),
@@ -120,156 +105,93 @@ def figure_2_18(ax: Axes | None = None) -> Diagram:
         for to_x, to_y in categories:
             ax.plot([x, to_x], [y, to_y], color="#cccccc", linewidth=0.8, zorder=0)
     for height in (0.0, 2.4):
-        _box(ax, (0.0, height), width=6.0, height=0.8)
+        box(ax, (0.0, height), width=6.0, height=0.8)
     for place in features + categories:
         ax.add_patch(Circle(place, 0.24, facecolor="white", edgecolor=style.INK))
     parts = {
-        "F1": _words(ax, (3.15, 0.0), "F1: features\n(short-term memory)", "left"),
-        "F2": _words(ax, (3.15, 2.4), "F2: categories\n(short-term memory)", "left"),
-        "up": _words(ax, (-2.85, 1.2), "bottom-up traces $z_{ij}$\nwhich category?", "right"),
-        "down": _words(ax, (2.85, 1.2), "top-down traces $z_{ji}$\nwhat does it expect?", "left"),
-        "I": _words(ax, (0.0, -1.5), "input pattern $I$"),
+        "F1": words(ax, (3.15, 0.0), "F1: features\n(short-term memory)", "left"),
+        "F2": words(ax, (3.15, 2.4), "F2: categories\n(short-term memory)", "left"),
+        "up": words(ax, (-2.85, 1.2), "bottom-up traces $z_{ij}$\nwhich category?", "right"),
+        "down": words(ax, (2.85, 1.2), "top-down traces $z_{ji}$\nwhat does it expect?", "left"),
+        "I": words(ax, (0.0, -1.5), "input pattern $I$"),
     }
     wires = {
-        ("F1", "F2"): _wire(ax, (-2.7, 0.4), (-2.7, 2.0)),
-        ("F2", "F1"): _wire(ax, (2.7, 2.0), (2.7, 0.4)),
+        ("F1", "F2"): wire(ax, (-2.7, 0.4), (-2.7, 2.0)),
+        ("F2", "F1"): wire(ax, (2.7, 2.0), (2.7, 0.4)),
     }
-    wires |= {
-        ("I", f"F1 {i}"): _wire(ax, (x, -1.2), (x, -0.4)) for i, (x, _) in enumerate(features)
-    }
+    wires |= {("I", f"F1 {i}"): wire(ax, (x, -1.2), (x, -0.4)) for i, (x, _) in enumerate(features)}
     return Diagram(ax, parts, wires)
 
 
 def figure_2_19(ax: Axes | None = None) -> Diagram:
     """Draw figure 2.19, ART1: two gains, the attentional and the orienting subsystem."""
-    ax = _blank(ax, "ART1: attention matches, orientation resets", (-0.6, 10.0), (-0.1, 6.8))
-    _frame(ax, (-0.3, 1.5), 6.0, 5.1)
-    _frame(ax, (6.1, 1.5), 3.2, 2.4)
+    ax = blank(ax, "ART1: attention matches, orientation resets", (-0.6, 10.0), (-0.1, 6.8))
+    frame(ax, (-0.3, 1.5), 6.0, 5.1)
+    frame(ax, (6.1, 1.5), 3.2, 2.4)
     parts = {
-        "attentional": _words(ax, (2.7, 6.25), "attentional subsystem", color=style.QUIET),
-        "orienting": _words(ax, (7.7, 3.5), "orienting subsystem", color=style.QUIET),
-        "F2": _box(ax, (4.0, 5.2), "F2 (STM)", width=2.2),
-        "F1": _box(ax, (4.0, 2.4), "F1 (STM)", width=2.2),
-        "gain 2": _box(ax, (1.2, 5.2), "gain 2"),
-        "gain 1": _box(ax, (1.2, 2.4), "gain 1"),
-        "A": _box(ax, (7.9, 2.4), r"match $<\rho$ ?", width=2.0),
-        "I": _box(ax, (4.0, 0.4), "input $I$", width=1.5),
-        "LTM up": _words(ax, (3.55, 3.8), "LTM", "right"),
-        "LTM down": _words(ax, (4.65, 3.8), "LTM", "left"),
-        "reset": _words(ax, (7.4, 5.2), "reset"),
+        "attentional": words(ax, (2.7, 6.25), "attentional subsystem", color=style.QUIET),
+        "orienting": words(ax, (7.7, 3.5), "orienting subsystem", color=style.QUIET),
+        "F2": box(ax, (4.0, 5.2), "F2 (STM)", width=2.2),
+        "F1": box(ax, (4.0, 2.4), "F1 (STM)", width=2.2),
+        "gain 2": box(ax, (1.2, 5.2), "gain 2"),
+        "gain 1": box(ax, (1.2, 2.4), "gain 1"),
+        "A": box(ax, (7.9, 2.4), r"match $<\rho$ ?", width=2.0),
+        "I": box(ax, (4.0, 0.4), "input $I$", width=1.5),
+        "LTM up": words(ax, (3.55, 3.8), "LTM", "right"),
+        "LTM down": words(ax, (4.65, 3.8), "LTM", "left"),
+        "reset": words(ax, (7.4, 5.2), "reset"),
     }
     wires = {
-        ("F1", "F2"): _wire(ax, (3.7, 2.75), (3.7, 4.85)),
-        ("F2", "F1"): _wire(ax, (4.5, 4.85), (4.5, 2.75)),
-        ("gain 2", "F2"): _wire(ax, (1.75, 5.2), (2.9, 5.2), sign="+"),
-        ("gain 1", "F1"): _wire(ax, (1.75, 2.4), (2.9, 2.4), sign="+"),
-        ("F2", "gain 1"): _wire(ax, (3.1, 4.85), (1.2, 2.75), sign="−"),
-        ("I", "F1"): _wire(ax, (4.0, 0.75), (4.0, 2.05), sign="+"),
-        ("I", "gain 1"): _wire(ax, (1.2, 0.4), (1.2, 2.05), sign="+"),
-        ("I", "gain 2"): _wire(ax, (3.25, 0.4), (0.1, 0.4), (0.1, 5.2), (0.65, 5.2), sign="+"),
-        ("I", "A"): _wire(ax, (4.75, 0.4), (7.9, 0.4), (7.9, 2.05), sign="+"),
-        ("F1", "A"): _wire(ax, (5.1, 2.4), (6.9, 2.4), sign="−"),
-        ("A", "F2"): _wire(ax, (8.9, 2.4), (9.7, 2.4), (9.7, 5.2), (5.1, 5.2)),
+        ("F1", "F2"): wire(ax, (3.7, 2.75), (3.7, 4.85)),
+        ("F2", "F1"): wire(ax, (4.5, 4.85), (4.5, 2.75)),
+        ("gain 2", "F2"): wire(ax, (1.75, 5.2), (2.9, 5.2), sign="+"),
+        ("gain 1", "F1"): wire(ax, (1.75, 2.4), (2.9, 2.4), sign="+"),
+        ("F2", "gain 1"): wire(ax, (3.1, 4.85), (1.2, 2.75), sign="−"),
+        ("I", "F1"): wire(ax, (4.0, 0.75), (4.0, 2.05), sign="+"),
+        ("I", "gain 1"): wire(ax, (1.2, 0.4), (1.2, 2.05), sign="+"),
+        ("I", "gain 2"): wire(ax, (3.25, 0.4), (0.1, 0.4), (0.1, 5.2), (0.65, 5.2), sign="+"),
+        ("I", "A"): wire(ax, (4.75, 0.4), (7.9, 0.4), (7.9, 2.05), sign="+"),
+        ("F1", "A"): wire(ax, (5.1, 2.4), (6.9, 2.4), sign="−"),
+        ("A", "F2"): wire(ax, (8.9, 2.4), (9.7, 2.4), (9.7, 5.2), (5.1, 5.2)),
     }
     return Diagram(ax, parts, wires)
 
 
 def figure_2_20(ax: Axes | None = None) -> Diagram:
     """Draw figure 2.20, ART2: the loops of F1 between the input and F2, and the reset."""
-    ax = _blank(ax, "ART2: the loops of F1; black dots divide by norms", (-5.2, 3.8), (-1.6, 6.1))
+    ax = blank(ax, "ART2: the loops of F1; black dots divide by norms", (-5.2, 3.8), (-1.6, 6.1))
     places = {
         "w": (0.0, 0.0), "x": (2.6, 0.0), "u": (0.0, 1.8), "v": (2.6, 1.8), "p": (0.0, 3.6),
         "q": (2.6, 3.6), "r": (-2.6, 2.7),
     }  # fmt: skip
-    parts = {name: _node(ax, place, f"${name}_i$") for name, place in places.items()}
+    parts = {name: node(ax, place, f"${name}_i$") for name, place in places.items()}
     parts |= {
-        "y": _box(ax, (1.3, 5.6), "F2: node $y_J$", width=3.6),
-        "I": _words(ax, (0.0, -1.35), "$I_i$"),
-        "au": _words(ax, (-0.15, 0.9), "$a u_i$", "right"),
-        "fx": _words(ax, (2.75, 0.9), "$f(x_i)$", "left"),
-        "fq": _words(ax, (2.75, 2.7), "$b f(q_i)$", "left"),
-        "up": _words(ax, (-0.25, 4.6), "$z_{ij}$", "right"),
-        "down": _words(ax, (0.25, 4.6), "$d z_{Ji}$", "left"),
-        "cp": _words(ax, (-1.15, 3.5), "$c p_i$", "right"),
-        "reset": _words(ax, (-2.75, 4.3), r"reset if $\|r\| < \rho$", "right"),
+        "y": box(ax, (1.3, 5.6), "F2: node $y_J$", width=3.6),
+        "I": words(ax, (0.0, -1.35), "$I_i$"),
+        "au": words(ax, (-0.15, 0.9), "$a u_i$", "right"),
+        "fx": words(ax, (2.75, 0.9), "$f(x_i)$", "left"),
+        "fq": words(ax, (2.75, 2.7), "$b f(q_i)$", "left"),
+        "up": words(ax, (-0.25, 4.6), "$z_{ij}$", "right"),
+        "down": words(ax, (0.25, 4.6), "$d z_{Ji}$", "left"),
+        "cp": words(ax, (-1.15, 3.5), "$c p_i$", "right"),
+        "reset": words(ax, (-2.75, 4.3), r"reset if $\|r\| < \rho$", "right"),
     }
     wires = {
-        ("I", "w"): _wire(ax, (0.0, -1.1), (0.0, -0.34)),
-        ("w", "x"): _wire(ax, (0.34, 0.0), (2.26, 0.0), norm=True),
-        ("x", "v"): _wire(ax, (2.6, 0.34), (2.6, 1.46)),
-        ("v", "u"): _wire(ax, (2.26, 1.8), (0.34, 1.8), norm=True),
-        ("u", "w"): _wire(ax, (0.0, 1.46), (0.0, 0.34)),
-        ("u", "p"): _wire(ax, (0.0, 2.14), (0.0, 3.26)),
-        ("p", "q"): _wire(ax, (0.34, 3.6), (2.26, 3.6), norm=True),
-        ("q", "v"): _wire(ax, (2.6, 3.26), (2.6, 2.14)),
-        ("p", "y"): _wire(ax, (-0.12, 3.92), (-0.12, 5.25)),
-        ("y", "p"): _wire(ax, (0.12, 5.25), (0.12, 3.92)),
-        ("u", "r"): _wire(ax, (-0.32, 1.91), (-2.28, 2.59), norm=True),
-        ("p", "r"): _wire(ax, (-0.32, 3.49), (-2.28, 2.81), norm=True),
-        ("r", "y"): _wire(ax, (-2.6, 3.04), (-2.6, 5.6), (-0.5, 5.6)),
+        ("I", "w"): wire(ax, (0.0, -1.1), (0.0, -0.34)),
+        ("w", "x"): wire(ax, (0.34, 0.0), (2.26, 0.0), norm=True),
+        ("x", "v"): wire(ax, (2.6, 0.34), (2.6, 1.46)),
+        ("v", "u"): wire(ax, (2.26, 1.8), (0.34, 1.8), norm=True),
+        ("u", "w"): wire(ax, (0.0, 1.46), (0.0, 0.34)),
+        ("u", "p"): wire(ax, (0.0, 2.14), (0.0, 3.26)),
+        ("p", "q"): wire(ax, (0.34, 3.6), (2.26, 3.6), norm=True),
+        ("q", "v"): wire(ax, (2.6, 3.26), (2.6, 2.14)),
+        ("p", "y"): wire(ax, (-0.12, 3.92), (-0.12, 5.25)),
+        ("y", "p"): wire(ax, (0.12, 5.25), (0.12, 3.92)),
+        ("u", "r"): wire(ax, (-0.32, 1.91), (-2.28, 2.59), norm=True),
+        ("p", "r"): wire(ax, (-0.32, 3.49), (-2.28, 2.81), norm=True),
+        ("r", "y"): wire(ax, (-2.6, 3.04), (-2.6, 5.6), (-0.5, 5.6)),
     }
     return Diagram(ax, parts, wires)
-
-
-def _blank(ax: Axes | None, title: str, xlim: Place, ylim: Place, inch: float = 0.75) -> Axes:
-    """Return axes of equal units without a frame; on a new page if `ax` is None."""
-    if ax is None:
-        size = inch * (xlim[1] - xlim[0]), inch * (ylim[1] - ylim[0]) + 0.3
-        _, ax = plt.subplots(figsize=size, layout="constrained")
-    style.axes(ax, title=title)
-    ax.axis("off")
-    ax.set(aspect="equal", xlim=xlim, ylim=ylim)
-    return ax
-
-
-def _words(
-    ax: Axes, place: Place, words: str, side: str = "center", color: str = style.INK
-) -> Text:
-    white = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
-    return ax.text(*place, words, ha=side, va="center", fontsize=9, color=color, bbox=white)
-
-
-def _box(
-    ax: Axes, place: Place, words: str = "", *, width: float = 1.1, height: float = 0.7
-) -> Text:
-    x, y = place
-    round_ = "round,pad=0,rounding_size=0.15"
-    box = FancyBboxPatch(
-        (x - width / 2, y - height / 2), width, height, boxstyle=round_,
-        facecolor=style.CELLS[0], edgecolor=style.INK,
-    )  # fmt: skip
-    ax.add_patch(box)
-    return ax.text(x, y, words, ha="center", va="center", fontsize=9, color=style.INK)
-
-
-def _node(ax: Axes, place: Place, words: str) -> Text:
-    ax.add_patch(Circle(place, 0.34, facecolor=style.CELLS[0], edgecolor=style.INK))
-    return ax.text(*place, words, ha="center", va="center", fontsize=10, color=style.INK)
-
-
-def _frame(ax: Axes, corner: Place, width: float, height: float) -> None:
-    frame = Rectangle(corner, width, height, facecolor="none", edgecolor=style.QUIET)
-    frame.set(linestyle="--", linewidth=0.8)
-    ax.add_patch(frame)
-
-
-def _wire(ax: Axes, *corners: Place, sign: str = "", norm: bool = False) -> FancyArrowPatch:
-    """Draw an arrow through corners: its sign stands at its end, a dot on its middle is a norm."""
-    arrow = FancyArrowPatch(
-        path=Path(corners), arrowstyle="-|>", mutation_scale=12, shrinkA=0, shrinkB=0,
-        color=style.INK, linewidth=1.1, joinstyle="miter",
-    )  # fmt: skip
-    ax.add_patch(arrow)
-    (x, y), (end_x, end_y) = corners[-2:]
-    if sign:
-        length = np.hypot(end_x - x, end_y - y)
-        along = np.array([end_x - x, end_y - y]) / length
-        beside = 0.22 * np.array([-along[1], along[0]]) * (1 if along[0] >= 0 else -1)
-        x, y = np.array([end_x, end_y]) - 0.4 * along + beside
-        ax.text(x, y, sign, ha="center", va="center", fontsize=10, color=style.INK)
-    if norm:
-        ax.plot((x + end_x) / 2, (y + end_y) / 2, "o", color=style.INK, markersize=7)
-    return arrow
 
 
 # The reset
@@ -544,7 +466,7 @@ def _grid_axes(ax: Axes | None, n: int, columns: int, m: int, title: str, below:
     if m % columns:
         raise ValueError(f"columns must divide the {m} points of a pattern, got {columns}")
     width = n * (columns + 1.5) - 1.2
-    return _blank(ax, title, (-0.3, width), (-below, m // columns + 0.3), inch=min(0.25, 9 / width))
+    return blank(ax, title, (-0.3, width), (-below, m // columns + 0.3), inch=min(0.25, 9 / width))
 
 
 def _fill(
