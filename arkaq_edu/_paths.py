@@ -97,7 +97,7 @@ def copy_course(folder: Path | str) -> tuple[list[Path], list[Path]]:
         target = Path(folder) / name
         content = without_solutions(file) if file.suffix == ".ipynb" else file.read_bytes()
         if not os.path.lexists(target):
-            _write_whole(content, target)
+            write_whole(content, target)
             copied.append(name)
         elif not target.is_file() or target.read_bytes() != content:
             kept.append(name)
@@ -139,12 +139,12 @@ def _files(folder: Path) -> list[Path]:
     ]
 
 
-def _write_whole(content: bytes, target: Path) -> None:
+def write_whole(content: bytes, target: Path) -> None:
     """Write a file so that, interrupted, it leaves no half of it under the name of `target`."""
     target.parent.mkdir(parents=True, exist_ok=True)
     part = target.with_name(target.name + ".part")
     try:
         part.write_bytes(content)
-        part.rename(target)
+        part.replace(target)
     finally:
         part.unlink(missing_ok=True)
