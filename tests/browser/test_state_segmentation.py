@@ -3,15 +3,10 @@
 import re
 
 from playwright.sync_api import expect
+from reading import BROKEN, OUTPUTS, assert_sound, errors, picture, slider_of
 
 NOTEBOOK = "07_state_segmentation.ipynb"
 FACT = re.compile(r"^(\d+) categories at vigilance ([\d.]+?)[,;]")
-
-OUTPUTS = """() => {
-    const { model } = window.jupyterapp.shell.currentWidget.content;
-    return Array.from(model.cells).flatMap((cell) => cell.sharedModel.getOutputs?.() ?? []);
-}"""
-BROKEN = re.compile("model not found|error displaying widget|error creating widget", re.IGNORECASE)
 
 
 def fact(canvas):
@@ -20,19 +15,9 @@ def fact(canvas):
     return int(count), float(vigilance)
 
 
-def slider_of(page, name):
-    """The visible slider of that name, and the number beside it."""
-    row = page.locator(".widget-hslider", has_text=name).filter(visible=True)
-    return row.get_by_role("slider"), row.locator(".widget-readout")
-
-
-def picture(canvas):
-    return canvas.evaluate("(canvas) => canvas.toDataURL()")
-
-
 def test_runs_and_follows_the_keyboard(open_notebook):
     page = open_notebook(NOTEBOOK)
-    assert [o for o in page.evaluate(OUTPUTS) if o["output_type"] == "error"] == []
+    assert errors(page) == []
 
     canvas = page.get_by_role("img", name=FACT)
     expect(canvas).to_be_visible()
@@ -62,8 +47,7 @@ def test_runs_and_follows_the_keyboard(open_notebook):
     expect(canvas).to_have_attribute("aria-label", re.compile(f"vigilance {vigilance:g}[,;]"))
     page.get_by_label("order").select_option("sorted by distance")
     expect(canvas).not_to_have_attribute("aria-label", re.compile(f"^{count} categories"))
-    assert page.get_by_role("alert").filter(visible=True).count() == 0
-    assert BROKEN.search(page.inner_text("body")) is None
+    assert_sound(page)
 
 
 def test_fits_the_window_and_the_screen(open_notebook):
