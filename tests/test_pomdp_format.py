@@ -6,7 +6,9 @@ import pytest
 from arkaq_edu.pomdp import belief_update, predict, problem
 
 
-@pytest.mark.parametrize("name", ["ball_side", "corridor", "floors", "tiger", "two_state"])
+@pytest.mark.parametrize(
+    "name", ["ball_side", "corridor", "floors", "three_places", "tiger", "two_state"]
+)
 def test_the_course_has_its_problems(name):
     pomdp = problem(name)
     assert not any(word.isdigit() for word in (*pomdp.states, *pomdp.actions, *pomdp.observations))
