@@ -9,7 +9,7 @@ __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
     submodules=[
         "animation", "art", "automata", "diagram", "distance", "field", "gallery", "kalman",
-        "policy", "segmentation", "style", "trajectories",
+        "learning", "policy", "segmentation", "style", "trajectories",
     ],
     submod_attrs={
         "animation": ["MovingWalk", "animate_walk", "save_walk"],

@@ -14,9 +14,9 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from . import art, automata, distance, field, kalman, policy, segmentation, trajectories
+from . import art, automata, distance, field, kalman, learning, policy, segmentation, trajectories
 
-_ROOMS = (art, kalman, distance, field, automata, segmentation, policy, trajectories)
+_ROOMS = (learning, art, kalman, distance, field, automata, segmentation, policy, trajectories)
 
 
 def _number(name: str) -> tuple[int, ...]:
