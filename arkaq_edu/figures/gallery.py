@@ -14,9 +14,31 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from . import art, automata, distance, field, kalman, learning, policy, segmentation, trajectories
+from . import (
+    art,
+    automata,
+    belief,
+    distance,
+    field,
+    kalman,
+    learning,
+    policy,
+    segmentation,
+    trajectories,
+)
 
-_ROOMS = (learning, art, kalman, distance, field, automata, segmentation, policy, trajectories)
+_ROOMS = (
+    learning,
+    art,
+    kalman,
+    distance,
+    field,
+    automata,
+    segmentation,
+    policy,
+    trajectories,
+    belief,
+)
 
 
 def _number(name: str) -> tuple[int, ...]:
