@@ -17,28 +17,17 @@ from matplotlib.figure import Figure
 from . import (
     art,
     automata,
-    belief,
     distance,
     field,
     kalman,
     learning,
+    mdp,
     policy,
     segmentation,
     trajectories,
 )
 
-_ROOMS = (
-    learning,
-    art,
-    kalman,
-    distance,
-    field,
-    automata,
-    segmentation,
-    policy,
-    trajectories,
-    belief,
-)
+_ROOMS = (learning, mdp, art, kalman, distance, field, automata, segmentation, policy, trajectories)
 
 
 def _number(name: str) -> tuple[int, ...]:

@@ -4,7 +4,7 @@ Thesis chapters 2.1, 2.2, 3 and 4.3. Learning from rewards is a third kind besid
 teacher and learning without any (the thesis counts it, and ARKAQ, as unsupervised; in ARKAQ only
 the segmentation of the world is).
 
-- `model`, `planning`: an MDP, and the best actions from knowing it;
+- `model`, `planning`: an MDP, and the best actions from knowing it (`grid`: a floor to try it on);
 - `optimality`, `performance`: what "best" means, and how good learning was;
 - `bandits`, `choice`: exploration against exploitation, and schedules between the two;
 - `prediction`, `q_learning`, `control`: learning from what happens (`kernels`: the inner loops).
@@ -13,10 +13,12 @@ the segmentation of the world is).
 from arkaq_edu.mdp.bandits import UCB, Bandit, Boltzmann, EpsilonGreedy, Play, Random, play
 from arkaq_edu.mdp.choice import Exponential, Linear, Power, argmax_shared, softmax
 from arkaq_edu.mdp.control import Held, Learning, exploit, explore, hold, practise
+from arkaq_edu.mdp.grid import Grid, grid_world
 from arkaq_edu.mdp.model import MDP
 from arkaq_edu.mdp.optimality import average_reward, delayed_rewards, discounted
 from arkaq_edu.mdp.performance import quality_of_convergence, regret, speed_of_convergence
 from arkaq_edu.mdp.planning import (
+    best_actions,
     error_bound,
     finite_horizon,
     policy_chances,
@@ -36,6 +38,7 @@ __all__ = [
     "Episode",
     "EpsilonGreedy",
     "Exponential",
+    "Grid",
     "Held",
     "Learning",
     "Linear",
@@ -45,6 +48,7 @@ __all__ = [
     "Random",
     "argmax_shared",
     "average_reward",
+    "best_actions",
     "delayed_rewards",
     "discounted",
     "discounted_returns",
@@ -52,6 +56,7 @@ __all__ = [
     "exploit",
     "explore",
     "finite_horizon",
+    "grid_world",
     "hold",
     "monte_carlo",
     "play",

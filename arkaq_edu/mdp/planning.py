@@ -143,7 +143,37 @@ def finite_horizon(mdp: MDP, horizon: int, gamma: float = 1.0) -> NDArray[np.flo
 
 def _first_best(Q: NDArray[np.float64], slack: float) -> NDArray[np.intp]:
     """Return the lowest action of each state that is no more than `slack` below the best."""
-    return (Q.max(axis=1, keepdims=True) - slack <= Q).argmax(axis=1)
+    return best_actions(Q, slack).argmax(axis=1)
+
+
+def best_actions(Q: ArrayLike, slack: float = 1e-9) -> NDArray[np.bool_]:
+    """Return which actions are the best of their state: the set under equations 2.9 and 3.1.
+
+    Parameters
+    ----------
+    Q : array_like, shape (S, A)
+        The value of each action.
+    slack : float, default 1e-9
+        How far below the best an action may be and still count as equally good, at least 0.
+
+    Returns
+    -------
+    ndarray of bool, shape (S, A)
+        At least one true in each row.
+
+    Raises
+    ------
+    ValueError
+        If `Q` is no matrix of finite numbers or `slack` is below 0.
+
+    Examples
+    --------
+    >>> best_actions([[1, 3, 3], [2, 0, 1]])
+    array([[False,  True,  True],
+           [ True, False, False]])
+    """
+    Q = array("Q", Q, (None, None))
+    return Q.max(axis=1, keepdims=True) - number("slack", slack, 0) <= Q
 
 
 def error_bound(mdp: MDP, values: ArrayLike) -> float:
