@@ -29,7 +29,7 @@ __getattr__, __dir__, __all__ = _lazy.attach(
         "art": ["ART1", "ART2", "ART2A", "EuclideanART"],
         "kalman": ["KalmanFilter", "constant_velocity", "kalman_batch"],
         "mdp": ["MDP", "QLearner", "value_iteration"],
-        "pomdp": ["POMDP", "belief_update", "read_pomdp"],
+        "pomdp": ["POMDP", "belief_update", "read_pomdp", "solve_pomdp"],
     },
 )  # fmt: skip
 

@@ -7,6 +7,7 @@ pleased about; where the answer is not right it raises `ExerciseError` with a li
 from ._ask import ExerciseError
 from .approach import check_backup, check_boltzmann, check_reward
 from .art import check_choose, check_match, check_norm_r
+from .belief import check_chances, check_correct, check_expected_reward, check_predict
 from .kalman import check_combine, check_nis, check_turn
 from .segmentation import check_nearest, check_present, check_scale
 
@@ -14,12 +15,16 @@ __all__ = [
     "ExerciseError",
     "check_backup",
     "check_boltzmann",
+    "check_chances",
     "check_choose",
     "check_combine",
+    "check_correct",
+    "check_expected_reward",
     "check_match",
     "check_nearest",
     "check_nis",
     "check_norm_r",
+    "check_predict",
     "check_present",
     "check_reward",
     "check_scale",

@@ -8,8 +8,8 @@ import lazy_loader as _lazy
 __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
     submodules=[
-        "animation", "art", "automata", "diagram", "distance", "field", "gallery", "kalman",
-        "learning", "mdp", "policy", "segmentation", "style", "trajectories",
+        "animation", "art", "automata", "belief", "diagram", "distance", "field", "gallery",
+        "kalman", "learning", "mdp", "policy", "segmentation", "style", "trajectories",
     ],
     submod_attrs={
         "animation": ["MovingWalk", "animate_walk", "save_walk"],

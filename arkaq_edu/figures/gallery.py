@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from . import (
     art,
     automata,
+    belief,
     distance,
     field,
     kalman,
@@ -27,7 +28,19 @@ from . import (
     trajectories,
 )
 
-_ROOMS = (learning, mdp, art, kalman, distance, field, automata, segmentation, policy, trajectories)
+_ROOMS = (
+    learning,
+    mdp,
+    art,
+    kalman,
+    distance,
+    field,
+    automata,
+    segmentation,
+    policy,
+    trajectories,
+    belief,
+)
 
 
 def _number(name: str) -> tuple[int, ...]:

@@ -4,7 +4,11 @@ Thesis 2.3.
 
 - `model`: a POMDP;
 - `belief`: what is known after what was done and observed;
-- `files`: models in Cassandra's file format, and the course's own.
+- `files`: models in Cassandra's file format, and the course's own;
+- `trees`: policy trees and what they earn;
+- `value`: a value function, the upper surface of vectors; `graph`: plans without an end;
+- `pruning`: which vectors are needed, and who dominates the others; `_simplex`: its loops;
+- `solve`: exact value iteration.
 """
 
 from arkaq_edu.pomdp.belief import (
@@ -15,17 +19,32 @@ from arkaq_edu.pomdp.belief import (
     successors,
 )
 from arkaq_edu.pomdp.files import PomdpFormatError, problem, read_pomdp, write_pomdp
+from arkaq_edu.pomdp.graph import PolicyGraph
 from arkaq_edu.pomdp.model import POMDP
+from arkaq_edu.pomdp.pruning import Domination, dominated, prune
+from arkaq_edu.pomdp.solve import bellman_error, solve_pomdp
+from arkaq_edu.pomdp.trees import PolicyTree, all_trees, tree_value
+from arkaq_edu.pomdp.value import ValueFunction
 
 __all__ = [
     "POMDP",
+    "Domination",
+    "PolicyGraph",
+    "PolicyTree",
     "PomdpFormatError",
     "Successors",
+    "ValueFunction",
+    "all_trees",
     "belief_update",
+    "bellman_error",
+    "dominated",
     "expected_rewards",
     "predict",
     "problem",
+    "prune",
     "read_pomdp",
+    "solve_pomdp",
     "successors",
+    "tree_value",
     "write_pomdp",
 ]

@@ -1,0 +1,548 @@
+"""Figures 2.5 to 2.8 and 2.13, and the pictures of the chapter on belief states.
+
+References
+----------
+Thesis, sections 2.3 to 2.3.3.
+
+Examples
+--------
+>>> from matplotlib.figure import Figure
+>>> figure_2_7(Figure().subplots())
+two steps right, no goal seen: [.333 .333 .000 .333], [.100 .450 .000 .450], [.100 .164 .000 .736]
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import FillBetweenPolyCollection
+from matplotlib.container import BarContainer
+from matplotlib.lines import Line2D
+from matplotlib.patches import FancyArrowPatch
+from numpy.typing import ArrayLike, NDArray
+
+from .. import _checks
+from ..pomdp import belief_update, problem, successors
+from . import style
+from .diagram import Diagram, blank, node, wire, words
+
+#: What the thesis prints for the floors after a move down.
+PRINTED_FLOORS = (0.0, 0.33, 0.33, 0.33)
+
+
+#: The nodes of figure 2.5: what is written in each, and its place.
+NODES = {
+    "S": ("$S_t$", (0.0, 0.0)),
+    "O": ("$O_t$", (0.0, 1.6)),
+    "B": ("$B_t$", (0.0, 3.2)),
+    "A": ("$A_t$", (2.4, 3.2)),
+    "R": ("$R_t$", (2.4, 1.1)),
+    "S then": ("$S_{t+1}$", (4.8, 0.0)),
+    "O then": ("$O_{t+1}$", (4.8, 1.6)),
+    "B then": ("$B_{t+1}$", (4.8, 3.2)),
+    "A then": ("$A_{t+1}$", (7.2, 3.2)),
+}
+#: Its wires, from a cause to its effect; that from belief to belief goes over their heads.
+CAUSES = [
+    ("S", "O"), ("O", "B"), ("B", "A"), ("S", "R"), ("A", "R"), ("S", "S then"), ("A", "S then"),
+    ("S then", "O then"), ("A", "O then"), ("O then", "B then"), ("A", "B then"),
+    ("B then", "A then"),
+]  # fmt: skip
+#: What the wires compute, by the letter of the tuple; SE is the state estimator, pi the policy.
+FUNCTIONS = {
+    "T": ("$T$", (2.2, -0.3), "center"),
+    "Omega": ("$O$", (4.95, 0.8), "left"),
+    "reward": ("$R$", (1.1, 0.85), "right"),
+    "SE": ("$SE$", (2.4, 4.15), "center"),
+    "pi": (r"$\pi$", (1.2, 3.45), "center"),
+}
+_ROW = 1.2  # from one belief to the next
+_LARGEST = 30.0  # of the dots of figure 2.13, in points, for a chance of 1
+
+
+class BeliefsPlot(NamedTuple):
+    """What `plot_beliefs` drew: a row of bars for each belief, first at the top."""
+
+    ax: Axes
+    bars: list[BarContainer]
+    printed: Line2D | None
+
+    def beliefs(self) -> NDArray[np.float64]:
+        """Return the heights of the bars: a row for each belief."""
+        return np.array([[bar.get_height() for bar in row] for row in self.bars])
+
+    def __repr__(self) -> str:
+        """Return what the picture states."""
+        rows = ", ".join(map(belief_words, self.beliefs()))
+        title = self.ax.get_title(loc="left")
+        return f"{title}: {rows}" if title else rows
+
+
+class LinePlot(NamedTuple):
+    """What `figure_2_8` drew: the line of all beliefs, and one of them."""
+
+    ax: Axes
+    line: Line2D
+    belief: Line2D
+
+    def __repr__(self) -> str:
+        """Return what the picture states."""
+        return self.ax.get_title(loc="left")
+
+
+class SuccessorsPlot(NamedTuple):
+    """What `figure_2_13` drew: a belief, and by (action, observation) the one that follows."""
+
+    ax: Axes
+    start: Line2D
+    successors: dict[tuple[str, str], Line2D]
+
+    def __repr__(self) -> str:
+        """Return what the picture states."""
+        return self.ax.get_title(loc="left")
+
+
+class RunPlot(NamedTuple):
+    """What `plot_run` drew: how much of the belief lies on the truth, and on the likeliest."""
+
+    ax: Axes
+    on_truth: Line2D
+    on_likeliest: Line2D
+    misled: Line2D
+
+    def __repr__(self) -> str:
+        """Return what the picture states."""
+        return self.ax.get_title(loc="left")
+
+
+class CalibrationPlot(NamedTuple):
+    """What `plot_calibration` drew: by name a line and its band, one deviation to each side."""
+
+    ax: Axes
+    lines: dict[str, Line2D]
+    bands: dict[str, FillBetweenPolyCollection]
+
+    def __repr__(self) -> str:
+        """Return what the picture states."""
+        return self.ax.get_title(loc="left")
+
+
+def belief_words(b: ArrayLike) -> str:
+    """Return a belief as it is printed, to three digits.
+
+    Examples
+    --------
+    >>> belief_words([0.1, 0.45, 0.0, 0.45]), belief_words([0.0, 1.0])
+    ('[.100 .450 .000 .450]', '[.000 1.000]')
+    """
+    return "[" + " ".join(_short(p, 3) for p in np.asarray(b)) + "]"
+
+
+def figure_2_5(ax: Axes | None = None) -> Diagram:
+    """Draw figure 2.5, a POMDP in time: what acts on what.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+
+    Returns
+    -------
+    Diagram
+        ``ax``, ``parts`` and ``wires``; a wire runs from a cause to its effect.
+
+    References
+    ----------
+    Thesis, figure 2.5; by section 2.3 the reward R_t is for A_t in S_t.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> plot = figure_2_5(Figure().subplots())
+    >>> sorted(cause for cause, effect in plot.wires if effect == "B then")
+    ['A', 'B', 'O then']
+    """
+    title = "POMDP: the state is hidden; the belief is made of what was done and observed"
+    ax = blank(ax, title, (-1.7, 8.0), (-0.9, 4.7))
+    ax.axhspan(-0.6, 0.6, color=style.CELLS[0], zorder=-2)
+    ax.text(7.9, 0.0, "hidden", ha="right", va="center", color=style.QUIET)
+    parts = {name: node(ax, place, text) for name, (text, place) in NODES.items()}
+    wires = {(start, end): _between(ax, start, end) for start, end in CAUSES}
+    left, right = NODES["B"][1], NODES["B then"][1]
+    over = left[1] + 0.95
+    wires["B", "B then"] = wire(
+        ax,
+        (left[0], left[1] + 0.36),
+        (left[0], over),
+        (right[0], over),
+        (right[0], right[1] + 0.36),
+    )
+    for name, (text, place, side) in FUNCTIONS.items():
+        parts[name] = words(ax, place, text, side)
+    return Diagram(ax, parts, wires)
+
+
+def plot_beliefs(
+    beliefs: ArrayLike,
+    states: Sequence[str],
+    names: Sequence[str],
+    ax: Axes | None = None,
+    *,
+    printed: Sequence[ArrayLike | None] | None = None,
+    title: str = "",
+) -> BeliefsPlot:
+    """Draw beliefs one below the other, as bars over the states.
+
+    Parameters
+    ----------
+    beliefs : array_like, shape (n, S)
+        The beliefs, the first at the top.
+    states : sequence of str
+        Names of the states.
+    names : sequence of str
+        What stands beside each belief: how it came about.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+    printed : sequence of (array_like or None), optional
+        Numbers that somebody printed, shape (S,), for each belief or None; they become hollow
+        marks.
+    title : str
+        What the picture states, without the numbers.
+
+    Returns
+    -------
+    BeliefsPlot
+
+    Raises
+    ------
+    ValueError
+        If a belief is no distribution, or the names are not as many as needed.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> plot_beliefs([[0.5, 0.5], [0.9, 0.1]], ["left", "right"], ["before", "after"],
+    ...              Figure().subplots())
+    [.500 .500], [.900 .100]
+    """
+    n, S = len(names), len(states)
+    b = _checks.distribution("beliefs", _checks.array("beliefs", beliefs, (n, S)))
+    if ax is None:
+        _, ax = plt.subplots(figsize=(6.4, 0.8 + 1.1 * n), layout="constrained")
+    ax = style.axes(ax, title=title)
+    x = np.arange(S, dtype=float)
+    bars, marks = [], []
+    for row, (belief, name) in enumerate(zip(b, names, strict=True)):
+        foot = -_ROW * row
+        bars.append(ax.bar(x, belief, 0.62, foot, color=style.OURS))
+        ax.plot([-0.45, S - 0.55], [foot, foot], color=style.QUIET, linewidth=0.8)
+        ax.text(-0.6, foot + 0.3, name, ha="right", va="center", color=style.INK)
+        shown = None if printed is None else printed[row]
+        for place, p in zip(x, belief, strict=True):
+            ax.text(place, foot + p + 0.04, _short(p), ha="center", va="bottom", fontsize=9)
+        if shown is not None:
+            marks.append(np.column_stack([x + 0.4, foot + np.asarray(shown)]))
+    ax.spines[["left", "bottom"]].set_visible(False)
+    ax.tick_params(length=0)
+    ax.set(xticks=x, xticklabels=states, yticks=[])
+    ax.set(xlim=(-0.65, S - 0.35), ylim=(-_ROW * (n - 1) - 0.03, 1.1))
+    hollow = None
+    if marks:
+        at, height = np.concatenate(marks).T
+        hollow = style.measurements(at, height, ax, clip_on=False, label="the thesis prints")
+        ax.legend(frameon=False, loc="upper right")
+    return BeliefsPlot(ax, bars, hollow)
+
+
+def figure_2_6(ax: Axes | None = None) -> BeliefsPlot:
+    """Draw figure 2.6: which of four floors, before and after a move down.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+
+    Returns
+    -------
+    BeliefsPlot
+        With the thesis's numbers as hollow marks: they are the floors that are still possible, all
+        alike, where Bayes' rule counts the robots that were on the first floor already.
+
+    References
+    ----------
+    Thesis, section 2.3.1 and figure 2.6.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> figure_2_6(Figure().subplots())
+    a step down, and no floor is told from another: [.250 .250 .250 .250], [.000 .250 .250 .500]
+    """
+    floors = problem("floors")
+    after = belief_update(floors, floors.start, floors.actions.index("down"), 0)
+    return plot_beliefs(
+        [floors.start, after], floors.states, ["at first", "after down"], ax,
+        printed=[None, PRINTED_FLOORS], title="a step down, and no floor is told from another",
+    )  # fmt: skip
+
+
+def figure_2_7(ax: Axes | None = None) -> BeliefsPlot:
+    """Draw figure 2.7: which cell of a corridor, after two steps right without a goal.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+
+    Returns
+    -------
+    BeliefsPlot
+
+    References
+    ----------
+    Thesis, section 2.3.1 and figure 2.7, where the first step, too, needs the observation that
+    this is not the goal.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> figure_2_7(Figure().subplots()).beliefs().round(3)
+    array([[0.333, 0.333, 0.   , 0.333],
+           [0.1  , 0.45 , 0.   , 0.45 ],
+           [0.1  , 0.164, 0.   , 0.736]])
+    """
+    corridor = problem("corridor")
+    right, nothing = corridor.actions.index("right"), corridor.observations.index("nothing")
+    beliefs = [corridor.start]
+    for _ in range(2):
+        beliefs.append(belief_update(corridor, beliefs[-1], right, nothing))
+    names = ["at first", "right: no goal", "right: no goal"]
+    return plot_beliefs(beliefs, corridor.states, names, ax, title="two steps right, no goal seen")
+
+
+def figure_2_8(ax: Axes | None = None, *, p: float = 0.25) -> LinePlot:
+    """Draw figure 2.8: all beliefs over two states are a line, p(s1) = 0 at its left end.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+    p : float in [0, 1]
+        The belief that is marked: the probability of s1.
+
+    Returns
+    -------
+    LinePlot
+
+    Raises
+    ------
+    ValueError
+        If `p` is no probability.
+
+    References
+    ----------
+    Thesis, section 2.3.1 and figure 2.8.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> figure_2_8(Figure().subplots())
+    b = [.25 .75]: a point at .25 of the way from surely s2 to surely s1
+    """
+    p = _checks.number("p", p, 0, 1)
+    title = f"b = [{_short(p)} {_short(1 - p)}]: a point at {_short(p)} of the way "
+    ax = _belief_line(ax, title + "from surely s2 to surely s1", (-0.5, 0.6), (6.4, 1.9))
+    (line,) = ax.plot([0, 1], [0, 0], color=style.INK, linewidth=2)
+    (mark,) = ax.plot(p, 0, "o", color=style.OURS, markersize=11)
+    for x, text in ((0, "surely $s_2$"), (1, "surely $s_1$")):
+        ax.plot(x, 0, "|", color=style.INK, markersize=14, markeredgewidth=2)
+        ax.annotate(text, (x, 0), (0, -22), textcoords="offset points", ha="center")
+    ax.annotate(f"{_short(p)}", (p, 0), (0, 10), textcoords="offset points", ha="center",
+                color=style.OURS)  # fmt: skip
+    return LinePlot(ax, line, mark)
+
+
+def figure_2_13(ax: Axes | None = None, *, p: float = 0.4) -> SuccessorsPlot:
+    """Draw figure 2.13: where two actions and three observations can lead one belief.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+    p : float in [0, 1]
+        The belief at the start: the probability of s1.
+
+    Returns
+    -------
+    SuccessorsPlot
+        The area of each dot is the chance of its observation.
+
+    Raises
+    ------
+    ValueError
+        If `p` is no probability.
+
+    References
+    ----------
+    Thesis, sections 2.3.3 (equation 2.16) and 2.3.4 (figure 2.13). The thesis gives the problem
+    neither T nor O; both are the course's own.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> len(figure_2_13(Figure().subplots()).successors)
+    6
+    """
+    pomdp = problem("two_state")
+    p = _checks.number("p", p, 0, 1)
+    ax = _belief_line(
+        ax, "one belief, two actions, three observations: six beliefs, larger where likelier",
+        (-1.75, 1.75), (6.4, 3.4),
+    )  # fmt: skip
+    drawn = {}
+    for a, (row, color) in enumerate(zip((1, -1), style.ACTIONS.values(), strict=False)):
+        ax.plot([0, 1], [row, row], color=style.QUIET, linewidth=1)
+        ax.text(-0.04, row, pomdp.actions[a], ha="right", va="center", color=color)
+        chances, beliefs = successors(pomdp, [p, 1 - p], a)
+        for name, chance, x in zip(pomdp.observations, chances, beliefs[:, 0], strict=True):
+            ax.plot([p, x], [0, row], color=color, linewidth=1, zorder=1)
+            (dot,) = ax.plot(x, row, "o", color=color, markersize=_LARGEST * chance**0.5)
+            drawn[pomdp.actions[a], name] = dot
+            ax.annotate(
+                f"{name}\n{_short(chance)}", (x, row), (0, 14 * row), textcoords="offset points",
+                ha="center", va="bottom" if row > 0 else "top", fontsize=9,
+            )  # fmt: skip
+    ax.plot([0, 1], [0, 0], color=style.QUIET, linewidth=1)
+    ax.text(-0.04, 0, "now", ha="right", va="center", color=style.INK)
+    (start,) = ax.plot(p, 0, "o", color=style.QUIET, markersize=_LARGEST)
+    return SuccessorsPlot(ax, start, drawn)
+
+
+def plot_run(
+    beliefs: ArrayLike,
+    truth: ArrayLike,
+    misled: ArrayLike,
+    ax: Axes | None = None,
+    *,
+    title: str = "",
+) -> RunPlot:
+    """Draw, step by step, how much of the belief lies on the hidden state.
+
+    Parameters
+    ----------
+    beliefs : array_like, shape (n, S)
+        The belief after each step.
+    truth : array_like of int, shape (n,)
+        The hidden state after each step.
+    misled : array_like of bool, shape (n,)
+        Whether what was observed spoke against the truth; hollow marks at the top.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+    title : str
+        What the picture states.
+
+    Returns
+    -------
+    RunPlot
+
+    Raises
+    ------
+    ValueError
+        If a belief is no distribution, or the lengths differ.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> plot = plot_run([[0.9, 0.1], [0.5, 0.5]], [1, 1], [True, False], Figure().subplots())
+    >>> plot.on_truth.get_ydata(), plot.on_likeliest.get_ydata()
+    (array([0.1, 0.5]), array([0.9, 0.5]))
+    """
+    b = _checks.distribution("beliefs", _checks.array("beliefs", beliefs, (None, None)))
+    n = len(b)
+    truth = _checks.array("truth", truth, (n,)).astype(int)
+    wrong = _checks.array("misled", misled, (n,)) > 0
+    ax = style.axes(ax, xlabel="step", ylabel="probability in the belief", title=title)
+    k = np.arange(n)
+    (likeliest,) = ax.plot(k, b.max(axis=1), "--", color=style.QUIET, lw=1.2, label="likeliest")
+    (on_truth,) = ax.plot(k, b[k, truth], color=style.OURS, lw=2, label="hidden state")
+    marks = style.measurements(k[wrong], np.full(wrong.sum(), 1.06), ax, label="look that misled")
+    ax.set(xlim=(-0.5, n - 0.5), ylim=(0, 1.12), yticks=np.linspace(0, 1, 6))
+    ax.legend(frameon=False, loc="lower right")
+    return RunPlot(ax, on_truth, likeliest, marks)
+
+
+def plot_calibration(
+    claimed: ArrayLike, right: dict[str, ArrayLike], ax: Axes | None = None, *, title: str = ""
+) -> CalibrationPlot:
+    """Draw how often the likeliest state was right, by how likely the belief had said it was.
+
+    Parameters
+    ----------
+    claimed : array_like, shape (n,)
+        Probabilities that beliefs gave to their likeliest states.
+    right : dict of str to array_like, shape (seeds, n)
+        For each curve the share of states that were right, a row for each seed; NaN where a
+        seed made no such claim.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+    title : str
+        What the picture states.
+
+    Returns
+    -------
+    CalibrationPlot
+
+    Raises
+    ------
+    ValueError
+        If the lengths differ.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> plot = plot_calibration([0.5, 0.9], {"honest": [[0.4, 0.9], [0.6, 0.9]]},
+    ...                         Figure().subplots())
+    >>> plot.lines["honest"].get_ydata()
+    array([0.5, 0.9])
+    """
+    claimed = _checks.array("claimed", claimed, (None,))
+    ax = style.axes(ax, xlabel="probability the belief gave its likeliest state",
+                    ylabel="how often that state was right", title=title)  # fmt: skip
+    ax.plot([0, 1], [0, 1], "--", color=style.QUIET, linewidth=1)
+    lines, bands = {}, {}
+    for (name, shares), color in zip(right.items(), (style.OURS, style.INK), strict=False):
+        share = _checks.array(name, shares, (None, len(claimed)), allow_nan=True)
+        mean, std = np.nanmean(share, axis=0), np.nanstd(share, axis=0)
+        lines[name], bands[name] = style.band(claimed, mean, std, ax, color=color, label=name)
+    ends = (claimed.min() - 0.02, 1.0)
+    ax.set(xlim=ends, aspect="equal")
+    ax.legend(frameon=False)
+    return CalibrationPlot(ax, lines, bands)
+
+
+def _short(p: float, digits: int = 2) -> str:
+    text = f"{p:.{digits}f}"
+    return text[1:] if text.startswith("0.") else text
+
+
+def _belief_line(
+    ax: Axes | None, title: str, ylim: tuple[float, float], size: tuple[float, float]
+) -> Axes:
+    """Return axes on which a belief over two states is a place: p(s1) runs to the right."""
+    if ax is None:
+        _, ax = plt.subplots(figsize=size, layout="constrained")
+    ax = style.axes(ax, xlabel="$p(s_1)$", title=title)
+    ax.spines["left"].set_visible(False)
+    ax.set(xlim=(-0.12, 1.06), ylim=ylim, yticks=[], xticks=np.linspace(0, 1, 5))
+    return ax
+
+
+def _between(ax: Axes, start: str, end: str) -> FancyArrowPatch:
+    """Draw a wire from the rim of one node of figure 2.5 to the rim of another."""
+    one, other = (np.array(NODES[name][1]) for name in (start, end))
+    along = 0.36 * (other - one) / np.linalg.norm(other - one)
+    return wire(ax, tuple(one + along), tuple(other - along))

@@ -1,0 +1,241 @@
+"""The loops of pruning: a small simplex method that looks for a belief where a vector is needed.
+
+A vector w against vectors u_0 ... u_{K-1} is a game. One player picks a belief b, the other a
+mixture m of the u; the first gains b . (w - m). Its value, max_b min_k b . (w - u_k), says what w
+adds to the upper surface of the u: with b, the witness, at hand it adds that much there; with m at
+hand it adds nowhere more. Each half is checked by plain arithmetic, so that nothing rests on the
+simplex method's own rounding.
+
+It runs on the mixture's side: minimise t over m >= 0 with sum m = 1 and (w - m)(s) <= t in every
+state s. S states give S + 1 equations however many the vectors are, and a basis of as many columns:
+t itself, some of the u, and for the other states what is lacking to t, their slack. The prices of
+the equations are the belief. Where the belief is one and no u is better at it than t allows, both
+have found their best.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from arkaq_edu._compiled import kernel
+
+# Numbers of this size are zero: the vectors are scaled to about one by who calls.
+ZERO = 1e-12
+
+
+@kernel
+def gain(w, vectors, n, low, high, b, mixture, basis, inverse, solution, column):
+    """Return an upper bound on max_b min_k b . (w - u_k), over the first n vectors u.
+
+    Leaves the belief in `b` and the mixture that proves the bound in `mixture`. Stops early where
+    the bound is no more than `low`, or where a belief gains more than `high`.
+    """
+    S = w.size
+    # The vector that w exceeds least anywhere is where to begin; alone it may already do.
+    first, bound = 0, np.inf
+    for k in range(n):
+        most = -np.inf
+        for s in range(S):
+            most = max(most, w[s] - vectors[k, s])
+            if most >= bound:
+                break
+        if most < bound:
+            first, bound = k, most
+    corner = 0
+    for s in range(S):
+        b[s] = 0.0
+        if w[s] - vectors[first, s] > w[corner] - vectors[first, corner]:
+            corner = s
+    b[corner] = 1.0
+    if bound <= low:
+        for k in range(n):
+            mixture[k] = 0.0
+        mixture[first] = 1.0
+        return bound
+
+    # Row i of the inverse belongs to basis[i]: k >= 0 is vector k, -1 is t, -2 - s a slack.
+    for i in range(S + 1):
+        for j in range(S + 1):
+            inverse[i, j] = 0.0
+    for s in range(S):
+        basis[s] = -2 - s
+        inverse[s, s] = -1.0
+        inverse[s, corner] = 1.0
+        inverse[s, S] = vectors[first, s] - vectors[first, corner]
+        solution[s] = inverse[s, S] + w[corner] - w[s]
+    basis[corner], basis[S] = -1, first
+    inverse[corner, S] = -vectors[first, corner]
+    inverse[S, S], solution[S] = 1.0, 1.0
+    solution[corner] = w[corner] - vectors[first, corner]
+
+    cautious = 20 * (S + 1)
+    for step in range(10 * cautious):
+        # The prices: a belief, as far as no entry is negative, and the price of sum m = 1.
+        entering, best = -1, ZERO
+        lowest = 0.0
+        for s in range(S):
+            price = -inverse[corner, s]
+            lowest = max(lowest, price)
+            if price > best and (step < cautious or entering == -1):
+                entering, best = -2 - s, price
+        top = -np.inf
+        for k in range(n):
+            height = inverse[corner, S]
+            for s in range(S):
+                height += inverse[corner, s] * vectors[k, s]
+            top = max(top, height)
+            if height > best and (step < cautious or entering == -1):
+                entering, best = k, height
+        # t exceeds what the belief gains by the height of the best answer to it.
+        if lowest <= ZERO and solution[corner] - top > high + ZERO:
+            break
+        if entering == -1:
+            break
+        # How the basis answers to the entering column, and who is first to reach zero.
+        for i in range(S + 1):
+            if entering >= 0:
+                total = inverse[i, S]
+                for s in range(S):
+                    total += inverse[i, s] * vectors[entering, s]
+            else:
+                total = -inverse[i, -2 - entering]
+            column[i] = total
+        leaving, ratio = -1, np.inf
+        for i in range(S + 1):
+            if i == corner or column[i] <= ZERO:
+                continue
+            r = max(solution[i], 0.0) / column[i]
+            if leaving == -1 or r < ratio - ZERO:
+                leaving, ratio = i, r
+            elif r <= ratio + ZERO:
+                larger = column[i] > column[leaving]
+                if basis[i] < basis[leaving] if step >= cautious else larger:
+                    leaving, ratio = i, min(r, ratio)
+        if leaving == -1:
+            break
+        pivot = column[leaving]
+        for j in range(S + 1):
+            inverse[leaving, j] /= pivot
+        solution[leaving] /= pivot
+        for i in range(S + 1):
+            if i != leaving and column[i] != 0.0:
+                for j in range(S + 1):
+                    inverse[i, j] -= column[i] * inverse[leaving, j]
+                solution[i] -= column[i] * solution[leaving]
+        basis[leaving] = entering
+        if solution[corner] <= low:
+            break
+
+    # Whatever the steps came to: clean both answers and see what they are worth.
+    total = 0.0
+    for s in range(S):
+        b[s] = max(inverse[corner, s], 0.0)
+        total += b[s]
+    for s in range(S):
+        b[s] /= total
+    total = 0.0
+    for k in range(n):
+        mixture[k] = 0.0
+    for i in range(S + 1):
+        if basis[i] >= 0:
+            mixture[basis[i]] = max(solution[i], 0.0)
+            total += mixture[basis[i]]
+    bound = -np.inf
+    for k in range(n):
+        mixture[k] /= total
+    for s in range(S):
+        height = w[s]
+        for i in range(S + 1):
+            if basis[i] >= 0:
+                height -= mixture[basis[i]] * vectors[basis[i], s]
+        bound = max(bound, height)
+    return bound
+
+
+@kernel
+def highest(b, vectors, n):
+    """Return which of the first n vectors is best at b; of equals the lexicographic largest.
+
+    That one is best somewhere alone too, however many meet at b.
+    """
+    best, top = 0, -np.inf
+    for k in range(n):
+        height = 0.0
+        for s in range(b.size):
+            height += b[s] * vectors[k, s]
+        if height > top + ZERO:
+            best, top = k, height
+        elif height >= top - ZERO:
+            for s in range(b.size):
+                difference = vectors[k, s] - vectors[best, s]
+                if difference > ZERO:
+                    best, top = k, max(top, height)
+                if abs(difference) > ZERO:
+                    break
+    return best
+
+
+@kernel
+def height_at(b, vectors, n):
+    """Return the upper surface of the first n vectors at b."""
+    top = -np.inf
+    for k in range(n):
+        height = 0.0
+        for s in range(b.size):
+            height += b[s] * vectors[k, s]
+        top = max(top, height)
+    return top
+
+
+@kernel
+def needed_sums(A, B, eps, seeds, done, pairs, kept, beliefs):
+    """Keep the sums A[i] + B[j] that form the upper surface of all of them, up to `eps`.
+
+    Leaves (i, j), the sum and its witness in `pairs`, `kept` and `beliefs`, and returns how many,
+    or -1 where there is no room for all. The seeds are beliefs to look at first.
+    """
+    n, S = A.shape
+    m = B.shape[0]
+    room = kept.shape[0]
+    w, b, column = np.empty(S), np.empty(S), np.empty(S + 1)
+    mixture, basis = np.empty(room), np.empty(S + 1, np.int64)
+    inverse, solution = np.empty((S + 1, S + 1)), np.empty(S + 1)
+    count = 0
+    # Every seed is looked at once; then every pair until it is kept or proved to add nothing.
+    for task in range(seeds.shape[0] + n * m):
+        pair = task - seeds.shape[0]
+        i, j = pair // m, pair % m
+        while pair < 0 or not done[i, j]:
+            if pair < 0:
+                for s in range(S):
+                    b[s] = seeds[task, s]
+            else:
+                for s in range(S):
+                    w[s] = A[i, s] + B[j, s]
+                if count > 0 and (
+                    gain(w, kept, count, eps, eps, b, mixture, basis, inverse, solution, column)
+                    <= eps
+                ):
+                    done[i, j] = True
+                    break
+                if count == 0:
+                    for s in range(S):
+                        b[s] = 1.0 / S
+            x, y = highest(b, A, n), highest(b, B, m)
+            top = height_at(b, A, n) + height_at(b, B, m)
+            if pair < 0:
+                if done[x, y] or (count > 0 and top - height_at(b, kept, count) <= eps):
+                    break
+            elif done[x, y]:  # rounding: keep the pair itself rather than lose it
+                x, y = i, j
+            if count == room:
+                return -1
+            done[x, y] = True
+            pairs[count, 0], pairs[count, 1] = x, y
+            for s in range(S):
+                kept[count, s] = A[x, s] + B[y, s]
+                beliefs[count, s] = b[s]
+            count += 1
+            if pair < 0:
+                break
+    return count

@@ -1,0 +1,242 @@
+"""Pruning: which vectors form the upper surface, and who dominates the others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from arkaq_edu._checks import array, number
+from arkaq_edu.pomdp import _simplex
+
+Floats = NDArray[np.floating]
+
+
+def prune(alphas: ArrayLike, tol: float = 1e-9) -> NDArray[np.intp]:
+    """Return the vectors that form the upper surface max_k b . alpha_k.
+
+    Parameters
+    ----------
+    alphas : array_like, shape (K, S)
+        The vectors.
+    tol : float, default 1e-9
+        What is left out may add no more than this anywhere, in the units of `alphas`.
+
+    Returns
+    -------
+    ndarray of int
+        The rows that are needed, ascending. Of equal rows the first is kept.
+
+    Raises
+    ------
+    ValueError
+        If `alphas` has another shape or is not finite, or `tol` is negative.
+
+    See Also
+    --------
+    dominated : who makes the others superfluous.
+
+    Notes
+    -----
+    To compare two vectors at a time is not enough: a vector can lie below the upper surface of
+    two others though neither of the two is above it everywhere. Whether a vector adds to the rest
+    at some belief is a linear program (C. White, "A survey of solution techniques for the
+    partially observed Markov decision process", Annals of Operations Research 32, 1991).
+
+    References
+    ----------
+    Thesis 2.3.6.
+
+    Examples
+    --------
+    The third is below the upper surface of the first two, the fourth below the third:
+
+    >>> prune([[4, 0], [0, 4], [1.8, 1.8], [1.5, 1.5]])
+    array([0, 1])
+    """
+    A = array("alphas", alphas, (None, None))
+    if not A.size:
+        raise ValueError(f"alphas must have at least one row and one column, got {A.shape}")
+    pairs, _ = needed_sums(A, np.zeros((1, A.shape[1])), number("tol", tol, 0))
+    return np.sort(pairs[:, 0])
+
+
+def needed_sums(
+    A: Floats, B: Floats, tol: float, seeds: Floats | None = None
+) -> tuple[NDArray[np.int64], Floats]:
+    """Return the pairs (i, j) whose sums A[i] + B[j] form the upper surface of all sums.
+
+    Parameters
+    ----------
+    A, B : ndarray, shape (N, S) and (M, S)
+        The vectors.
+    tol : float
+        What is left out adds no more than this anywhere.
+    seeds : ndarray, shape (P, S), optional
+        Beliefs where needed sums are likely to be found.
+
+    Returns
+    -------
+    pairs : ndarray of int, shape (K, 2)
+    beliefs : ndarray, shape (K, S)
+        A belief at which each is needed.
+    """
+    S = A.shape[1]
+    # In a state where all vectors agree nothing is decided, and only differences matter.
+    A, B = A - A[0], B - B[0]
+    decides = np.flatnonzero((A != 0).any(axis=0) | (B != 0).any(axis=0))
+    if not len(decides):
+        return np.zeros((1, 2), np.int64), np.full((1, S), 1 / S)
+    A, B = np.ascontiguousarray(A[:, decides]), np.ascontiguousarray(B[:, decides])
+    scale = np.abs(A).max() + np.abs(B).max()
+    A /= scale
+    B /= scale
+    points = np.eye(len(decides))
+    if seeds is not None:
+        inside = seeds[:, decides]
+        mass = inside.sum(axis=1, keepdims=True)
+        points = np.concatenate([points, (inside / np.where(mass > 0, mass, 1))[mass[:, 0] > 0]])
+    eps = max(tol / scale, 8 * _simplex.ZERO)
+    room = 2 * (len(A) + len(B)) + 64
+    while True:
+        pairs = np.empty((room, 2), np.int64)
+        kept, beliefs = np.empty((room, len(decides))), np.empty((room, len(decides)))
+        done = np.zeros((len(A), len(B)), np.bool_)
+        count = _simplex.needed_sums(A, B, eps, points, done, pairs, kept, beliefs)
+        if count >= 0:
+            break
+        points = np.concatenate([points, beliefs])
+        room *= 4
+    witnesses = np.zeros((count, S))
+    witnesses[:, decides] = beliefs[:count]
+    return pairs[:count], witnesses
+
+
+@dataclass(frozen=True)
+class Domination:
+    """One vector that is needed nowhere, and those that together make it so.
+
+    Attributes
+    ----------
+    index : int
+        The dominated vector.
+    by : tuple of int
+        The vectors that dominate it: one alone where one is enough, else several jointly.
+    weights : ndarray, shape (len(by),)
+        The proof: mixed by these weights, which sum to 1, they earn at least as much in every
+        state. So at every belief one of them does.
+    lead : ndarray, shape (len(by), S)
+        Where: each one's lead over the dominated vector in every state. At a belief b it is ahead
+        by ``lead @ b``.
+    """
+
+    index: int
+    by: tuple[int, ...]
+    weights: Floats
+    lead: Floats
+
+    def at(self, b: ArrayLike) -> int:
+        """Return which of `by` is furthest ahead at a belief.
+
+        Parameters
+        ----------
+        b : array_like, shape (S,)
+            The belief.
+
+        Returns
+        -------
+        int
+        """
+        return self.by[int((self.lead @ array("b", b, (self.lead.shape[1],))).argmax())]
+
+
+def dominated(alphas: ArrayLike, tol: float = 1e-9) -> list[Domination]:
+    """Name every vector that is needed nowhere, and who dominates it and where.
+
+    Parameters
+    ----------
+    alphas : array_like, shape (K, S)
+        The vectors.
+    tol : float, default 1e-9
+        A vector that adds no more than this anywhere is dominated, in the units of `alphas`.
+
+    Returns
+    -------
+    list of Domination
+        One for each row that `prune` leaves out, ascending.
+
+    Raises
+    ------
+    ValueError
+        If `alphas` has another shape or is not finite, or `tol` is negative.
+
+    Notes
+    -----
+    In figure 2.17 p_d is dominated by p_c alone. Of p_c the thesis says that it is "similarly"
+    dominated by p_a and p_b; but neither of the two is above it everywhere: only jointly do they
+    dominate it, p_a on one side and p_b on the other. Comparing pairs never finds that. The
+    linear program does, and its dual is the proof: a mixture of p_a and p_b above p_c everywhere.
+
+    References
+    ----------
+    Thesis 2.3.6 (figure 2.17).
+
+    Examples
+    --------
+    >>> pc, pd = dominated([[4, 0], [0, 4], [1.8, 1.8], [1.5, 1.5]])
+    >>> pc.index, pc.by, pc.weights
+    (2, (0, 1), array([0.5, 0.5]))
+    >>> pc.at([0.9, 0.1]), pc.at([0.1, 0.9])
+    (0, 1)
+    >>> pd.index, pd.by
+    (3, (2,))
+    """
+    A = array("alphas", alphas, (None, None))
+    needed = prune(A, tol)
+    found = []
+    for k in np.setdiff1d(np.arange(len(A)), needed):
+        ahead = A - A[k]
+        ahead[k] = -np.inf
+        alone = np.flatnonzero(ahead.min(axis=1) >= 0)
+        if len(alone):  # the nearest of those above it everywhere
+            by = alone[[ahead[alone].sum(axis=1).argmin()]]
+            weights: Floats = np.ones(1)
+        else:
+            _, _, mixture = gain(A[k], A[needed])
+            by, weights = needed[mixture > 0], mixture[mixture > 0]
+        found.append(Domination(int(k), tuple(map(int, by)), weights, A[by] - A[k]))
+    return found
+
+
+def gain(w: Floats, vectors: Floats, low: float = -np.inf) -> tuple[float, Floats, Floats]:
+    """Return what a vector adds to others where it adds most: max_b min_k b . (w - u_k).
+
+    Parameters
+    ----------
+    w : ndarray, shape (S,)
+        The vector.
+    vectors : ndarray, shape (K, S)
+        The others.
+    low : float
+        It is no use to know more once the gain is known to be at most this.
+
+    Returns
+    -------
+    gain : float
+        Negative where `w` is below the others' upper surface everywhere. An upper bound, certified
+        by the mixture; the gain itself up to rounding, if it is above `low`.
+    belief : ndarray, shape (S,)
+        Where that is.
+    mixture : ndarray, shape (K,)
+        Weights that sum to 1: ``w - mixture @ vectors`` is at most `gain` in every state.
+    """
+    K, S = vectors.shape
+    scale = max(float(np.abs(vectors - w).max()), np.finfo(float).tiny)
+    b, mixture = np.empty(S), np.empty(K)
+    others = np.ascontiguousarray((vectors - w) / scale)
+    _simplex.gain(
+        np.zeros(S), others, K, low / scale, np.inf, b, mixture,
+        np.empty(S + 1, np.int64), np.empty((S + 1, S + 1)), np.empty(S + 1), np.empty(S + 1),
+    )  # fmt: skip
+    return float((w - mixture @ vectors).max()), b, mixture

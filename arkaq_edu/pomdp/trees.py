@@ -1,0 +1,202 @@
+"""Policy trees: what to do now, and what to do then, whatever is observed."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from arkaq_edu._checks import integer
+from arkaq_edu.pomdp.model import POMDP
+
+
+@dataclass(frozen=True)
+class PolicyTree:
+    """A plan for a number of steps: an action, and for each observation a plan for the rest.
+
+    Parameters
+    ----------
+    action : int
+        The action at the root.
+    branches : tuple of PolicyTree, default ()
+        What follows each observation, all of the same depth; empty where this is the last step.
+
+    Raises
+    ------
+    ValueError
+        If `action` is not an integer >= 0, or the branches are not trees of one depth.
+
+    References
+    ----------
+    Thesis 2.3.4, figure 2.9.
+
+    Examples
+    --------
+    Listen twice for a tiger, then open a door if it was heard behind the other one both times.
+
+    >>> listen, left, right = map(PolicyTree, range(3))
+    >>> plan = PolicyTree(0, (PolicyTree(0, (right, listen)), PolicyTree(0, (listen, left))))
+    >>> plan.depth
+    3
+    >>> print(PolicyTree(0, (right, left)))
+    0
+      0: 2
+      1: 1
+    """
+
+    action: int
+    branches: tuple[PolicyTree, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "action", integer("action", self.action))
+        object.__setattr__(self, "branches", tuple(self.branches))
+        if not all(isinstance(branch, PolicyTree) for branch in self.branches):
+            raise ValueError(f"branches must be policy trees, got {self.branches!r}")
+        depths = {branch.depth for branch in self.branches}
+        if len(depths) > 1:
+            raise ValueError(f"branches must all have the same depth, got {sorted(depths)}")
+
+    @property
+    def depth(self) -> int:
+        """The number of steps that the plan is for."""
+        return 1 + (self.branches[0].depth if self.branches else 0)
+
+    def text(self, pomdp: POMDP | None = None) -> str:
+        """Return the tree as text: an action, and below it a line for each observation.
+
+        Parameters
+        ----------
+        pomdp : POMDP, optional
+            Where the names come from; without it the numbers stand.
+
+        Returns
+        -------
+        str
+
+        Examples
+        --------
+        >>> pomdp = POMDP([np.eye(2)] * 2, np.full((2, 2, 2), 0.5), np.eye(2), 0.9,
+        ...               actions=["look", "kick"], observations=["ball left", "ball right"])
+        >>> print(PolicyTree(0, (PolicyTree(1), PolicyTree(0))).text(pomdp))
+        look
+          ball left: kick
+          ball right: look
+        """
+        return "\n".join(self._lines(pomdp))
+
+    def __str__(self) -> str:
+        return self.text()
+
+    def _lines(self, pomdp: POMDP | None) -> list[str]:
+        lines = [pomdp.actions[self.action] if pomdp else str(self.action)]
+        for z, branch in enumerate(self.branches):
+            first, *rest = branch._lines(pomdp)
+            lines.append(f"  {pomdp.observations[z] if pomdp else z}: {first}")
+            lines += ["  " + line for line in rest]
+        return lines
+
+
+def tree_value(pomdp: POMDP, tree: PolicyTree) -> NDArray[np.float64]:
+    """Return the vector alpha_p of a policy tree p: what it earns from each state.
+
+    Parameters
+    ----------
+    pomdp : POMDP
+        The model.
+    tree : PolicyTree
+        The plan.
+
+    Returns
+    -------
+    ndarray, shape (S,)
+        alpha(s) = R(s, a) + gamma sum_t T(s, a, t) sum_z O(t, a, z) alpha_z(t), where a is the
+        action at the root and alpha_z the vector of the tree that follows observation z. Without
+        branches only the reward is left.
+
+    Raises
+    ------
+    ValueError
+        If the tree has an action that does not exist, or branches for another number of
+        observations.
+
+    Notes
+    -----
+    From a belief b the tree earns b . alpha_p, equations 2.20 and 2.22. The thesis writes V_p(s)
+    there; it is V_p(b), a function of the belief. The same in 2.23: V_t(b), the best tree for b.
+
+    References
+    ----------
+    Thesis 2.3.4 (equations 2.18-2.22).
+
+    Examples
+    --------
+    The ball is left or right and stays there; a look errs in one of ten cases; a kick to the right
+    side earns 1.
+
+    >>> pomdp = POMDP(T=[np.eye(2)] * 3, O=[[[0.9, 0.1], [0.1, 0.9]]] * 3,
+    ...               R=[[0, 1, 0], [0, 0, 1]], gamma=0.5)
+    >>> tree_value(pomdp, PolicyTree(1))
+    array([1., 0.])
+    >>> tree_value(pomdp, PolicyTree(0, (PolicyTree(1), PolicyTree(2))))
+    array([0.45, 0.45])
+    """
+    integer("action", tree.action, 0, pomdp.n_actions - 1)
+    alpha = pomdp.R[:, tree.action].copy()
+    if not tree.branches:
+        return alpha
+    if len(tree.branches) != pomdp.n_observations:
+        raise ValueError(
+            f"branches must be one for each of the {pomdp.n_observations} observations, "
+            f"got {len(tree.branches)}"
+        )
+    rest = np.array([tree_value(pomdp, branch) for branch in tree.branches])
+    later = (pomdp.O[tree.action] * rest.T).sum(axis=1)
+    return alpha + pomdp.gamma * pomdp.T[tree.action] @ later
+
+
+def all_trees(pomdp: POMDP, depth: int) -> Iterator[PolicyTree]:
+    """Yield every policy tree of a depth: the search without any pruning.
+
+    Parameters
+    ----------
+    pomdp : POMDP
+        The model.
+    depth : int
+        The number of steps, at least 1.
+
+    Yields
+    ------
+    PolicyTree
+        There are A to the power (Z^depth - 1) / (Z - 1) of them: for two actions and two
+        observations 2, 8, 128, 32768, and then two thousand million.
+
+    Raises
+    ------
+    ValueError
+        If `depth` is not an integer >= 1.
+
+    References
+    ----------
+    Thesis 2.3.4: P in equation 2.23.
+
+    Examples
+    --------
+    >>> pomdp = POMDP([np.eye(2)] * 2, np.full((2, 2, 2), 0.5), np.eye(2), 0.9)
+    >>> [sum(1 for tree in all_trees(pomdp, depth)) for depth in (1, 2, 3)]
+    [2, 8, 128]
+    """
+    depth = integer("depth", depth, 1)
+    return _trees(pomdp.n_actions, pomdp.n_observations, depth)
+
+
+def _trees(n_actions: int, n_observations: int, depth: int) -> Iterator[PolicyTree]:
+    if depth == 1:
+        yield from map(PolicyTree, range(n_actions))
+        return
+    shorter = list(_trees(n_actions, n_observations, depth - 1))
+    for action in range(n_actions):
+        for branches in itertools.product(shorter, repeat=n_observations):
+            yield PolicyTree(action, branches)

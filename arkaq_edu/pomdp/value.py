@@ -1,0 +1,176 @@
+"""A value function over beliefs: the upper surface of a set of vectors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from arkaq_edu._checks import array, distribution, integer
+from arkaq_edu.pomdp.graph import PolicyGraph
+from arkaq_edu.pomdp.trees import PolicyTree
+
+
+@dataclass(frozen=True, eq=False)
+class ValueFunction:
+    """V(b) = max_k b . alpha_k: what the best of K plans earns from a belief.
+
+    Attributes
+    ----------
+    alphas : ndarray, shape (K, S)
+        What each plan earns from each state.
+    actions : ndarray of int, shape (K,)
+        The first action of each plan.
+    branches : ndarray of int, shape (K, Z)
+        Where each plan goes on after each observation: a row of `shorter`, or, without a
+        `shorter`, a row of this same value function (a policy graph). Shape (K, 0) for plans of
+        one step.
+    shorter : ValueFunction or None
+        The value function with one step less to go.
+    error : float
+        A certified bound: nowhere on the simplex is V further from the optimal value than this.
+
+    Notes
+    -----
+    V is piecewise linear and convex in the belief. The thesis (2.3.4) says so of the optimal
+    policy; it is the value function that has this shape, and a policy is a choice among the
+    pieces. Equations 2.20, 2.22 and 2.23 write V(s) for it: its argument is the belief, V(b).
+
+    References
+    ----------
+    Thesis 2.3.4 (equations 2.20-2.23; figures 2.10-2.12). E. Sondik, "The optimal control of
+    partially observable Markov processes over the infinite horizon: discounted costs", Operations
+    Research 26, 1978.
+
+    Examples
+    --------
+    Figure 2.16: a1 earns 1 in s1, a2 earns 1.5 in s2.
+
+    >>> V = ValueFunction(np.array([[1, 0], [0, 1.5]]), np.array([0, 1]), np.empty((2, 0), int))
+    >>> V.value([0.25, 0.75]), V.action([0.25, 0.75])
+    (1.125, 1)
+    >>> V.value([[1, 0], [0.6, 0.4], [0, 1]])
+    array([1. , 0.6, 1.5])
+    """
+
+    alphas: NDArray[np.floating]
+    actions: NDArray[np.intp]
+    branches: NDArray[np.intp]
+    shorter: ValueFunction | None = None
+    error: float = 0.0
+
+    def __len__(self) -> int:
+        return len(self.alphas)
+
+    def __repr__(self) -> str:
+        n, n_states = self.alphas.shape
+        return f"ValueFunction({n} vector{'' if n == 1 else 's'} over {n_states} states)"
+
+    def best(self, b: ArrayLike) -> Any:
+        """Return which plan is best from a belief; of equals the first.
+
+        Parameters
+        ----------
+        b : array_like, shape (S,) or (N, S)
+            A belief, or many.
+
+        Returns
+        -------
+        int, or ndarray of int of shape (N,)
+
+        Raises
+        ------
+        ValueError
+            If `b` is no distribution over the states.
+        """
+        k = (self._beliefs(b) @ self.alphas.T).argmax(axis=-1)
+        return k if k.ndim else int(k)
+
+    def value(self, b: ArrayLike) -> Any:
+        """Return V(b), equation 2.23.
+
+        Parameters
+        ----------
+        b : array_like, shape (S,) or (N, S)
+            A belief, or many.
+
+        Returns
+        -------
+        float, or ndarray of shape (N,)
+
+        Raises
+        ------
+        ValueError
+            If `b` is no distribution over the states.
+        """
+        values = (self._beliefs(b) @ self.alphas.T).max(axis=-1)
+        return values if values.ndim else float(values)
+
+    def action(self, b: ArrayLike) -> Any:
+        """Return the first action of the best plan.
+
+        Parameters
+        ----------
+        b : array_like, shape (S,) or (N, S)
+            A belief, or many.
+
+        Returns
+        -------
+        int, or ndarray of int of shape (N,)
+
+        Raises
+        ------
+        ValueError
+            If `b` is no distribution over the states.
+        """
+        a = self.actions[self.best(b)]
+        return a if np.ndim(a) else int(a)
+
+    @property
+    def graph(self) -> PolicyGraph | None:
+        """The policy graph, where the plans go on among themselves; else None."""
+        if self.shorter is not None or not self.branches.shape[1]:
+            return None
+        return PolicyGraph(self.actions, self.branches)
+
+    def tree(self, k: int) -> PolicyTree:
+        """Return plan k of a finite horizon, written out.
+
+        Parameters
+        ----------
+        k : int
+            The row of `alphas`.
+
+        Returns
+        -------
+        PolicyTree
+
+        Raises
+        ------
+        ValueError
+            If there is no such plan, or it has no end.
+        """
+        k = integer("k", k, 0, len(self) - 1)
+        if self.shorter is None and self.branches.shape[1]:
+            raise ValueError("k must be a plan with an end, this policy graph goes on for ever")
+        # Plans share what follows, and so may the trees: written out they would be many.
+        memory: dict[tuple[int, int], PolicyTree] = {}
+
+        def grow(V: ValueFunction, depth: int, k: int) -> PolicyTree:
+            if (depth, k) not in memory:
+                rest = (
+                    ()
+                    if V.shorter is None
+                    else tuple(grow(V.shorter, depth + 1, int(j)) for j in V.branches[k])
+                )
+                memory[depth, k] = PolicyTree(int(V.actions[k]), rest)
+            return memory[depth, k]
+
+        return grow(self, 0, k)
+
+    def _beliefs(self, b: ArrayLike) -> NDArray[np.float64]:
+        n_states = self.alphas.shape[1]
+        many = np.ndim(b) == 2
+        return distribution("b", array("b", b, (None, n_states) if many else (n_states,)))
