@@ -17,7 +17,7 @@ from stand_in import triangle_stream
 
 import arkaq_edu as ae
 from arkaq_edu.figures import segmentation
-from arkaq_edu.widgets import Buttons, Explorer, vigilance, vigilance_explorer
+from arkaq_edu.widgets import Buttons, CanvasView, Drag, Explorer, vigilance, vigilance_explorer
 from arkaq_edu.widgets.scene import Cells, Line, Panel, Points, Scene, Text
 
 PATTERNS = triangle_stream(2000)
@@ -279,3 +279,80 @@ def test_an_explorer_goes_step_by_step_with_buttons():
     assert explorer.error is None and repr(explorer) == "at the start"
     with pytest.raises(ValueError, match="'up'"):
         explorer.controls["steps"].press("up")
+
+
+def pulled(number, start, to, panel=0, phase="move"):
+    return {"number": number, "panel": panel, "from": start, "to": to, "phase": phase}
+
+
+def slider(value=0.5, step=0.1, low=0, high=1):
+    return ipywidgets.FloatSlider(value, min=low, max=high, step=step)
+
+
+def test_a_drag_moves_its_slider_to_the_stop_next_to_the_pointer():
+    explorer = Explorer(dot_at, x=Drag(ipywidgets.IntSlider(3, max=20)))
+    assert explorer.view.draggable == [0] and repr(explorer) == "a dot at 3"
+    for to, shown in [((7.4, 0.1), 7), ((7.6, 9.0), 8), ((-3.0, 0.5), 0), ((99.0, 0.5), 20)]:
+        explorer.view.drag = pulled(1, (3.0, 0.5), to)
+        assert repr(explorer) == f"a dot at {shown}"
+        assert explorer.controls["x"].value == explorer.controls["x"].children[0].value == shown
+    explorer.controls["x"].children[0].value = 5
+    assert repr(explorer) == "a dot at 5", "the slider alone does it too"
+    explorer.controls["x"].value = 6
+    assert explorer.controls["x"].children[0].value == 6
+    explorer.view.drag = pulled(2, (6.0, 0.5), (13.0, 0.5))
+    assert isinstance(explorer.error, RuntimeError), "an error shows, as with any control"
+
+
+def test_arrow_keys_step_and_none_is_lost_when_the_kernel_was_busy():
+    one = Drag(slider())
+    view = CanvasView()
+    one.follow(view)
+    for pressed, value in [((1, 0), 0.6), ((1, 1), 0.7), ((-2, 1), 0.4), ((30, 1), 1.0)]:
+        view.arrows = pressed
+        assert one.value == pytest.approx(value)
+
+
+def test_a_drag_by_gain_goes_from_where_the_sliders_were_and_tells_of_both_at_once():
+    both = Drag(slider(0, 1, -90, 90), slider(30, 1, 0, 60), panel=1, gain=(-20, 10))
+    view, told = CanvasView(), []
+    both.follow(view)
+    both.observe(lambda change: told.append(change["new"]), names="value")
+    view.drag = pulled(1, (0.5, 0.5), (1.5, 1.0), panel=1, phase="begin")
+    view.drag = pulled(1, (0.5, 0.5), (2.5, 1.5), panel=1)
+    assert told == [(-20, 35), (-40, 40)], "not added up: it is counted from where it began"
+    view.drag = pulled(2, (0.0, 0.0), (0.0, 9.0), panel=1)
+    assert both.value == (-40, 60), "no further than the slider goes"
+    view.drag = pulled(3, (0.0, 0.0), (1.0, 1.0), panel=0)
+    assert both.value == (-40, 60), "that was another panel's"
+    view.arrows = (1, -2)
+    assert both.value == (-40, 60), "and so are the keys, then"
+    view.drag = pulled(4, (0.0, 0.0), (0.0, 0.0), panel=1)
+    view.arrows = (2, -4)
+    assert both.value == (-41, 58), "a key goes the way that a drag goes"
+
+
+def test_two_drags_share_a_canvas():
+    view = CanvasView()
+    one, other = Drag(slider()), Drag(y=slider(), panel=1)
+    one.follow(view)
+    other.follow(view)
+    assert view.draggable == [0, 1]
+    view.arrows = (1, 0)
+    assert (one.value, other.value) == pytest.approx((0.6, 0.5)), "keys are the first one's"
+    view.drag = pulled(1, (0.0, 0.0), (0.9, 0.2), panel=1)
+    assert (one.value, other.value) == pytest.approx((0.6, 0.2))
+
+
+def test_the_script_tells_all_that_a_drag_reads():
+    script = Path(vigilance.__file__).with_name("canvas.js").read_text()
+    for name in ("drag", "arrows", "draggable"):
+        assert f'"{name}"' in script and CanvasView.class_traits()[name].metadata["sync"]
+
+
+def test_a_bare_panel_has_no_axes_and_one_scale():
+    panel = Panel("", "", (0, 4), (0, 1), [], bare=True)
+    assert Scene("a view", [panel]).pack()[0]["panels"][0]["bare"] is True
+    ax = Figure().subplots()
+    panel.paint(ax)
+    assert not ax.axison and ax.get_aspect() == 1

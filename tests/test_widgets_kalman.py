@@ -148,17 +148,19 @@ def test_a_negative_deviation_is_refused(r, q, name):
 def test_a_band_is_sent_and_painted_in_its_own_shade(explorer):
     track, beside = explorer.drawn.panels
     sigma = track.layers[0]
-    assert sigma.kind == "cells" and sigma.look()["palette"] == [sigma.shade]
+    look = sigma.look()
+    assert sigma.kind == "cells" and look["border"] == 0 and len(look["palette"]) == 1
     shade = [0.75 + 0.25 * channel for channel in to_rgb(style.OURS)]
-    assert to_rgb(sigma.shade) == pytest.approx(shade, abs=0.01)
-    assert beside.layers[0].shade != sigma.shade
+    assert to_rgb(look["palette"][0]) == pytest.approx(shade, abs=0.01)
+    assert beside.layers[0].look()["palette"] != look["palette"]
     from matplotlib.figure import Figure
 
     ax = Figure().subplots()
     sigma.paint(ax)
-    (patch,) = ax.patches
-    assert patch.get_facecolor()[:3] == pytest.approx(to_rgb(sigma.shade))
-    assert patch.get_xy()[:-1] == pytest.approx(sigma.polygons[0])
+    (area,) = ax.collections
+    assert area.get_facecolor()[0, :3] == pytest.approx(to_rgb(look["palette"][0]))
+    assert area.get_paths()[0].vertices[:-1] == pytest.approx(sigma.polygons[0])
+    assert area.get_linewidth() == 0
 
 
 def test_all_the_words_stay_inside_their_panels(explorer):

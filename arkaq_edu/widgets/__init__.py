@@ -4,7 +4,7 @@ Every explorer is an `Explorer`: plain controls, a plain function from their val
 and one canvas that draws any scene.
 """
 
-from .explorer import Buttons, CanvasView, Explorer
+from .explorer import Buttons, CanvasView, Drag, Explorer
 from .kalman import kalman_explorer
 from .resonance import letters_explorer, resonance_explorer
 from .vigilance import vigilance_explorer
@@ -12,6 +12,7 @@ from .vigilance import vigilance_explorer
 __all__ = [
     "Buttons",
     "CanvasView",
+    "Drag",
     "Explorer",
     "kalman_explorer",
     "letters_explorer",

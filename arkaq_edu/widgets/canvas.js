@@ -28,6 +28,7 @@ const LAYERS = {
       ctx.fillStyle = layer.palette[color];
       ctx.fill(path);
     });
+    if (!layer.border) return;
     ctx.strokeStyle = "white";
     ctx.lineWidth = layer.border / 0.75;
     for (const path of paths) ctx.stroke(path);
@@ -62,13 +63,25 @@ const LAYERS = {
   },
 };
 
+// The way from a point of a panel's axes to a pixel of its box, and back.
+function axesOf(panel, box) {
+  const [scale, unscale] = panel.log ? [Math.log, Math.exp] : [(value) => value, (value) => value];
+  const share = (value, [from, to]) => (scale(value) - scale(from)) / (scale(to) - scale(from));
+  const value = (part, [from, to]) => unscale(scale(from) + part * (scale(to) - scale(from)));
+  return {
+    at: (x, y) => [
+      box.x + box.width * share(x, panel.xlim),
+      box.y + box.height * (1 - share(y, panel.ylim)),
+    ],
+    back: (x, y) => [
+      value((x - box.x) / box.width, panel.xlim),
+      value(1 - (y - box.y) / box.height, panel.ylim),
+    ],
+  };
+}
+
 function drawPanel(ctx, panel, numbers, box, ratio) {
-  const scale = panel.log ? Math.log : (value) => value;
-  const place = (value, [from, to]) => (scale(value) - scale(from)) / (scale(to) - scale(from));
-  const at = (x, y) => [
-    box.x + box.width * place(x, panel.xlim),
-    box.y + box.height * (1 - place(y, panel.ylim)),
-  ];
+  const { at } = axesOf(panel, box);
   // Thin lines are sharp where they run through the middle of the screen's own pixels.
   const sharp = (value) => (Math.round(value * ratio) + 0.5) / ratio;
 
@@ -81,6 +94,7 @@ function drawPanel(ctx, panel, numbers, box, ratio) {
     ctx.restore();
   }
 
+  if (panel.bare) return;
   const [left, foot] = [sharp(box.x), sharp(box.y + box.height)];
   ctx.beginPath();
   ctx.moveTo(left, box.y);
@@ -125,17 +139,82 @@ function arrange(panels, width) {
   let y = 0;
   const boxes = panels.map((panel) => {
     const share = stacked ? width : (width * panel.width) / total;
-    const box = {
-      x: x + MARGIN.left,
-      y: y + MARGIN.top,
-      width: share - MARGIN.left - MARGIN.right,
-      height: height - MARGIN.top - MARGIN.bottom,
-    };
+    const box = panel.bare
+      ? fitted(panel, { x, y, width: share, height })
+      : {
+          x: x + MARGIN.left,
+          y: y + MARGIN.top,
+          width: share - MARGIN.left - MARGIN.right,
+          height: height - MARGIN.top - MARGIN.bottom,
+        };
     if (stacked) y += height;
     else x += share;
     return box;
   });
   return [boxes, stacked ? y : height];
+}
+
+// A bare panel has one scale for both directions.
+function fitted(panel, box) {
+  const [across, up] = [panel.xlim, panel.ylim].map(([from, to]) => Math.abs(to - from));
+  const scale = Math.min(box.width / across, box.height / up);
+  const [width, height] = [scale * across, scale * up];
+  return { x: box.x + (box.width - width) / 2, y: box.y + (box.height - height) / 2, width, height };
+}
+
+const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowDown: [0, -1], ArrowUp: [0, 1] };
+
+// Tells the kernel of drags and of the arrow keys, once a frame at most. While the kernel is busy
+// the manager keeps the newest message alone: so each holds all there is to know since the drag
+// began, and keys are counted, not sent.
+function takeInput(model, canvas, panelAt) {
+  let drag = null;
+  let frame = 0;
+  const tell = (name, value) => {
+    model.set(name, value);
+    frame ||= requestAnimationFrame(() => {
+      frame = 0;
+      model.save_changes();
+    });
+  };
+  const pixel = (event) => {
+    const { left, top } = canvas.getBoundingClientRect();
+    return [event.clientX - left, event.clientY - top];
+  };
+  const move = (event, phase) => {
+    tell("drag", { ...drag.told, to: drag.back(...pixel(event)), phase });
+  };
+  const on = {
+    pointerdown(event) {
+      const place = panelAt(...pixel(event));
+      if (!place || event.button !== 0) return;
+      const number = (model.get("drag").number ?? 0) + 1;
+      drag = { back: place.back, told: { number, panel: place.panel, from: place.back(...pixel(event)) } };
+      canvas.setPointerCapture(event.pointerId);
+      move(event, "begin");
+    },
+    pointermove(event) {
+      if (drag) move(event, "move");
+      else canvas.style.cursor = panelAt(...pixel(event)) ? "grab" : "";
+    },
+    pointerup(event) {
+      if (drag) move(event, "end");
+      drag = null;
+    },
+    keydown(event) {
+      const step = ARROWS[event.key];
+      if (!step || event.ctrlKey || event.altKey || event.metaKey) return;
+      event.preventDefault(); // the page stays where it is
+      const [x, y] = model.get("arrows");
+      tell("arrows", [x + step[0], y + step[1]]);
+    },
+  };
+  on.pointercancel = on.pointerup;
+  for (const [name, act] of Object.entries(on)) canvas.addEventListener(name, act);
+  canvas.tabIndex = 0;
+  canvas.setAttribute("aria-keyshortcuts", Object.keys(ARROWS).join(" "));
+  canvas.dataset.lmSuppressShortcuts = "true"; // JupyterLab has other plans for arrow keys
+  canvas.classList.add("arkaq-draggable");
 }
 
 function render({ model, el }) {
@@ -146,6 +225,14 @@ function render({ model, el }) {
   canvas.setAttribute("role", "img");
   el.classList.add("arkaq-canvas");
   el.replaceChildren(fact, canvas);
+
+  let places = []; // of the panels on which a drag may begin, as they were last painted
+  const panelAt = (x, y) =>
+    places.find(
+      ({ box }) => x >= box.x && x <= box.x + box.width && y >= box.y && y <= box.y + box.height,
+    );
+  const draggable = model.get("draggable");
+  if (draggable.length) takeInput(model, canvas, panelAt);
 
   function paint() {
     const scene = model.get("scene");
@@ -168,6 +255,10 @@ function render({ model, el }) {
     ctx.fillRect(0, 0, width, height);
     ctx.font = `12px ${getComputedStyle(el).fontFamily}`;
     scene.panels.forEach((panel, i) => drawPanel(ctx, panel, numbers, boxes[i], ratio));
+    places = draggable.map((panel) => {
+      const box = boxes[panel];
+      return { panel, box, back: axesOf(scene.panels[panel], box).back };
+    });
     fact.textContent = scene.fact;
     canvas.setAttribute("aria-label", scene.fact);
   }

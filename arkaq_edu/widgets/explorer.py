@@ -9,13 +9,29 @@ from typing import Any
 
 import anywidget
 import ipywidgets
+import numpy as np
 import traitlets
+from numpy.typing import NDArray
 
 from .scene import PNG_WIDTH, Scene
 
 
 class CanvasView(anywidget.AnyWidget):
-    """A canvas in the browser that draws the scene it was last shown.
+    """A canvas in the browser that draws the scene it was last shown, and tells of the pointer.
+
+    Attributes
+    ----------
+    scene, numbers : dict, bytes
+        What it draws, as `Scene.pack` makes it.
+    draggable : list of int
+        The panels on which a drag may begin; without any the canvas takes no input.
+    drag : dict
+        The newest drag, or an empty dict: its ``number``, the ``panel``, where it came ``from`` and
+        has come ``to``, in the units of the panel's axes, and the ``phase``: "begin", "move" or
+        "end". The browser tells of it once a frame at most, and while the kernel is busy only the
+        newest word waits; so no phase but the last is sure to arrive.
+    arrows : tuple of two int
+        How often the arrow keys were pressed: right less left, up less down.
 
     Examples
     --------
@@ -30,6 +46,9 @@ class CanvasView(anywidget.AnyWidget):
     _css = Path(__file__).with_name("canvas.css")
     scene = traitlets.Dict().tag(sync=True)
     numbers = traitlets.Bytes().tag(sync=True)
+    draggable: traitlets.List[int] = traitlets.List().tag(sync=True)
+    drag = traitlets.Dict().tag(sync=True)
+    arrows = traitlets.Tuple((0, 0)).tag(sync=True)
 
     def show(self, scene: Scene) -> None:
         """Draw `scene`; it travels to the browser in one message."""
@@ -97,6 +116,103 @@ class Buttons(ipywidgets.HBox):
         return tuple(proposal["value"])
 
 
+class Drag(ipywidgets.VBox):
+    """One slider or two that a drag over the picture moves too, and the arrow keys on it.
+
+    Parameters
+    ----------
+    x, y : ipywidgets.FloatSlider or IntSlider, optional
+        What the pointer moves across and upward; one of them may be missing.
+    panel : int
+        On which panel a drag may begin.
+    gain : tuple of two float, optional
+        How far the sliders go for each unit of the panel's axes. Where it is None, they go to where
+        the pointer is.
+
+    Attributes
+    ----------
+    value : float, or tuple of two float
+        Of the slider, or of both. Setting it is as good as dragging.
+
+    Examples
+    --------
+    >>> belief = Drag(ipywidgets.FloatSlider(0.5, min=0, max=1, step=0.05))
+    >>> view = CanvasView()
+    >>> belief.follow(view)
+    >>> view.drag = {"number": 1, "panel": 0, "from": (0.5, 2), "to": (0.31, 7)}
+    >>> belief.value
+    0.3
+    >>> view.arrows = (-2, 0)
+    >>> belief.value
+    0.2
+    """
+
+    value = traitlets.Any()
+
+    def __init__(
+        self,
+        x: ipywidgets.DOMWidget | None = None,
+        y: ipywidgets.DOMWidget | None = None,
+        *,
+        panel: int = 0,
+        gain: tuple[float, float] | None = None,
+    ) -> None:
+        self.panel, self.gain = panel, None if gain is None else np.array(gain)
+        self._pair = (x, y)
+        self._number, self._start = 0, self._place()
+        super().__init__([slider for slider in self._pair if slider])
+        self._gather()
+        for slider in self.children:
+            slider.observe(self._gather, names="value")
+        self.observe(self._spread, names="value")
+
+    def follow(self, view: CanvasView) -> None:
+        """Let drags and arrow keys on that canvas move the sliders."""
+        view.draggable = [*view.draggable, self.panel]
+        view.observe(self._dragged, names="drag")
+        view.observe(self._stepped, names="arrows")
+
+    def _dragged(self, change: Any) -> None:
+        drag = change["new"]
+        if drag["panel"] != self.panel:
+            return
+        if drag["number"] != self._number:
+            self._number, self._start = drag["number"], self._place()
+        begin, now = np.array([drag["from"], drag["to"]])
+        self._go(now if self.gain is None else self._start + self.gain * (now - begin))
+
+    def _stepped(self, change: Any) -> None:
+        view = change["owner"]
+        if view.drag.get("panel", view.draggable[0]) != self.panel:
+            return
+        keys = np.subtract(change["new"], change["old"])
+        if len(self.children) == 1:  # one slider takes all four keys, as sliders do
+            keys[:] = keys.sum()
+        steps = np.array([slider.step if slider else 0.0 for slider in self._pair])
+        self._go(self._place() + steps * keys * (1 if self.gain is None else np.sign(self.gain)))
+
+    def _place(self) -> NDArray[np.float64]:
+        return np.array([slider.value if slider else 0.0 for slider in self._pair])
+
+    def _go(self, place: NDArray[np.float64]) -> None:
+        """Move each slider to the stop next to its place, and tell of both at once."""
+        with self.hold_trait_notifications():
+            for slider, target in zip(self._pair, place.tolist(), strict=True):
+                if slider:
+                    stop = slider.min + round((target - slider.min) / slider.step) * slider.step
+                    stop = min(max(round(stop, 10), slider.min), slider.max)
+                    slider.value = type(slider.value)(stop)
+
+    def _gather(self, _: Any = None) -> None:
+        values = tuple(slider.value for slider in self.children)
+        self.value = values if len(values) > 1 else values[0]
+
+    def _spread(self, change: Any) -> None:
+        values = change["new"] if len(self.children) > 1 else [change["new"]]
+        for slider, value in zip(self.children, values, strict=True):
+            slider.value = value
+
+
 class Explorer(ipywidgets.VBox):
     """Controls above a canvas that is drawn anew whenever one of them moves.
 
@@ -108,7 +224,7 @@ class Explorer(ipywidgets.VBox):
         Takes the values of the controls by name, returns a `Scene`. A plain function, so that it
         can be tested without a browser.
     **controls : ipywidgets widget
-        Widgets with a ``value``: sliders, menus, `Buttons`.
+        Widgets with a ``value``: sliders, menus, `Buttons`, `Drag`.
 
     Attributes
     ----------
@@ -142,6 +258,8 @@ class Explorer(ipywidgets.VBox):
         self._redraw()
         for control in controls.values():
             control.observe(self._moved, names="value")
+            if isinstance(control, Drag):
+                control.follow(self.view)
 
     def _redraw(self) -> None:
         self.drawn = self._draw(**{name: box.value for name, box in self.controls.items()})

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
 
 import ipywidgets
 import numpy as np
-from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from .. import _checks
@@ -38,22 +36,6 @@ class Walk(NamedTuple):
     Z: NDArray[np.float64]
     U: NDArray[np.float64]
     lots: NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Band(Cells):
-    """The area between two lines, in one shade."""
-
-    shade: str
-
-    def look(self) -> dict[str, Any]:
-        """Return all but the numbers."""
-        return super().look() | {"palette": [self.shade]}
-
-    def paint(self, ax: Axes) -> None:
-        """Draw with matplotlib."""
-        for polygon in self.polygons:
-            ax.fill(*np.transpose(polygon), color=self.shade, linewidth=0)
 
 
 def simulated_walk(rng: np.random.Generator | int | None = 0) -> Walk:
@@ -237,6 +219,6 @@ def _between(
     high: NDArray[np.float64],
     within: tuple[float, float, float, float],
     shade: str,
-) -> Band:
+) -> Cells:
     outline = np.column_stack([np.append(x, x[::-1]), np.append(high, low[::-1])])
-    return Band([outline], [0], within, shade)
+    return Cells([outline], [0], within, [shade], border=0)

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
-from typing import Any
 
 import ipywidgets
 import numpy as np
-from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from ..art import ART1, match_norm
@@ -126,20 +123,6 @@ def _learned(c: float, d: float, ends: tuple[float, float]) -> list[Layer]:
     return [Line([end, end], ends, style.QUIET, 1.0, dashed=True)] if end <= _FAR else []
 
 
-@dataclass(frozen=True)
-class Points5x5(Cells):
-    """Squares, black or white, for the points of letters."""
-
-    def look(self) -> dict[str, Any]:
-        """Return all but the numbers."""
-        return super().look() | {"palette": ["#eeeeee", style.INK], "border": 0.8}
-
-    def paint(self, ax: Axes) -> None:
-        """Draw with matplotlib."""
-        palette = self.look()["palette"]
-        style.cells(self.polygons, [palette[color] for color in self.colors], ax)
-
-
 #: Where the slider of the letters stops.
 VIGILANCES = tuple(round(0.05 * step, 2) for step in range(21))
 
@@ -225,7 +208,7 @@ def _templates(network: ART1) -> Panel:
         for i, on in enumerate(template.astype(int).tolist()):
             polygons.append(square + np.array([left + i % 5, foot + 4 - i // 5]))
             colors.append(on)
-    grids = Points5x5(polygons, colors, (0, 21.5, 0, 22.5))
+    grids = Cells(polygons, colors, (0, 21.5, 0, 22.5), ["#eeeeee", style.INK], border=0.8)
     return Panel(
         "templates, each above its letters", "", (0, 21.5), (0, 22.5), [grids, *names],
         xticks=[], yticks=[],

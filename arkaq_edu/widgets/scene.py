@@ -35,20 +35,23 @@ PNG_WIDTH = 760  # what a stored picture takes of the page, in pixels of the pag
 
 @dataclass(frozen=True)
 class Cells:
-    """Polygons, each filled with a colour of `style.CELLS`, seen through a window of the panel.
+    """Polygons, each filled with a colour of `palette`, seen through a window of the panel.
 
-    `within` is that window: left, right, bottom, top, in the units of the axes.
+    `within` is that window: left, right, bottom, top, in the units of the axes. `border` is the
+    width of the white lines between them, in points; by default it goes with their number.
     """
 
     kind: ClassVar[str] = "cells"
     polygons: Sequence[NDArray[np.float64]]
     colors: Sequence[int]
     within: tuple[float, float, float, float]
+    palette: Sequence[str] = style.CELLS
+    border: float | None = None
 
     def look(self) -> dict[str, Any]:
         """Return all but the numbers."""
-        border = style.border_width(len(self.polygons))
-        return {"palette": style.CELLS, "within": self.within, "border": border}
+        border = style.border_width(len(self.polygons)) if self.border is None else self.border
+        return {"palette": list(self.palette), "within": self.within, "border": border}
 
     def numbers(self) -> NDArray[np.float32]:
         """Return how many polygons, their sizes, their colours, their corners."""
@@ -58,7 +61,9 @@ class Cells:
 
     def paint(self, ax: Axes) -> None:
         """Draw with matplotlib."""
-        area = style.cells(self.polygons, [style.CELLS[color] for color in self.colors], ax)
+        look = self.look()
+        area = style.cells(self.polygons, [self.palette[color] for color in self.colors], ax)
+        area.set_linewidth(look["border"])
         left, right, bottom, top = self.within
         window = Rectangle((left, bottom), right - left, top - bottom, transform=ax.transData)
         area.set_clip_path(window)
@@ -161,6 +166,8 @@ class Panel:
         Where numbers stand; round ones are chosen where it is None.
     width : float
         Share of the picture's width.
+    bare : bool
+        Whether no axes are drawn; then both directions have one scale.
     """
 
     xlabel: str
@@ -172,6 +179,7 @@ class Panel:
     xticks: Sequence[float] | None = None
     yticks: Sequence[float] | None = None
     width: float = 1.0
+    bare: bool = False
 
     def ticks(self) -> tuple[list[float], list[float]]:
         """Return where the numbers of the two axes stand.
@@ -193,6 +201,9 @@ class Panel:
             axis.set_major_locator(FixedLocator(ticks))
             axis.set_minor_locator(NullLocator())
             axis.set_ticklabels([tick_label(tick) for tick in ticks])
+        if self.bare:
+            ax.axis("off")
+            ax.set_aspect("equal")
         for layer in self.layers:
             layer.paint(ax)
 
@@ -221,7 +232,7 @@ class Scene:
                 end: [[tick, tick_label(tick)] for tick in ticks]
                 for end, ticks in zip(("xticks", "yticks"), panel.ticks(), strict=True)
             }
-            names = ("xlabel", "ylabel", "xlim", "ylim", "log", "width")
+            names = ("xlabel", "ylabel", "xlim", "ylim", "log", "width", "bare")
             panels.append(
                 {name: getattr(panel, name) for name in names} | axes | {"layers": layers}
             )
