@@ -45,16 +45,16 @@ def test_figure_2_5_has_the_causes_of_a_pomdp(ax):
     for start, end in belief.figure_2_5(ax).wires:
         causes.setdefault(end, set()).add(start)
     assert causes == {
-        "O": {"S"},
-        "B": {"O"},
-        "A": {"B"},
-        "R": {"S", "A"},
-        "S then": {"S", "A"},
-        "O then": {"S then", "A"},
-        "B then": {"B", "A", "O then"},
-        "A then": {"B then"},
+        "O_t": {"S_t"},
+        "B_t": {"O_t"},
+        "A_t": {"B_t"},
+        "R_t": {"S_t", "A_t"},
+        "S_t+1": {"S_t", "A_t"},
+        "O_t+1": {"S_t+1", "A_t"},
+        "B_t+1": {"B_t", "A_t", "O_t+1"},
+        "A_t+1": {"B_t+1"},
     }, "T(s, a, .), O(s', a, .), R(s, a), SE(b, a, o), and a policy of the belief alone"
-    assert not any({"S", "S then"} & into for name, into in causes.items() if name[0] in "AB")
+    assert not any({"S_t", "S_t+1"} & into for name, into in causes.items() if name[0] in "AB")
 
 
 def test_figure_2_6_counts_robots_where_the_thesis_counts_floors(ax):

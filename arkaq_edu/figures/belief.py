@@ -22,44 +22,28 @@ from matplotlib.axes import Axes
 from matplotlib.collections import FillBetweenPolyCollection
 from matplotlib.container import BarContainer
 from matplotlib.lines import Line2D
-from matplotlib.patches import FancyArrowPatch
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _checks
 from ..pomdp import belief_update, problem, successors
 from . import style
-from .diagram import Diagram, blank, node, wire, words
+from .diagram import Diagram, Place, blank, link, moment, wire, words
 
 #: What the thesis prints for the floors after a move down.
 PRINTED_FLOORS = (0.0, 0.33, 0.33, 0.33)
 
 
-#: The nodes of figure 2.5: what is written in each, and its place.
-NODES = {
-    "S": ("$S_t$", (0.0, 0.0)),
-    "O": ("$O_t$", (0.0, 1.6)),
-    "B": ("$B_t$", (0.0, 3.2)),
-    "A": ("$A_t$", (2.4, 3.2)),
-    "R": ("$R_t$", (2.4, 1.1)),
-    "S then": ("$S_{t+1}$", (4.8, 0.0)),
-    "O then": ("$O_{t+1}$", (4.8, 1.6)),
-    "B then": ("$B_{t+1}$", (4.8, 3.2)),
-    "A then": ("$A_{t+1}$", (7.2, 3.2)),
-}
-#: Its wires, from a cause to its effect; that from belief to belief goes over their heads.
+#: Where the variables of figure 2.5 stand.
+PLACES: dict[str, Place] = {
+    "S_t": (0.0, 0.0), "O_t": (0.0, 1.6), "B_t": (0.0, 3.2), "A_t": (2.4, 3.2), "R_t": (2.4, 1.1),
+    "S_t+1": (4.8, 0.0), "O_t+1": (4.8, 1.6), "B_t+1": (4.8, 3.2), "A_t+1": (7.2, 3.2),
+}  # fmt: skip
+#: Its wires, from a cause to its effect; the one from B_t to B_t+1 goes over their heads.
 CAUSES = [
-    ("S", "O"), ("O", "B"), ("B", "A"), ("S", "R"), ("A", "R"), ("S", "S then"), ("A", "S then"),
-    ("S then", "O then"), ("A", "O then"), ("O then", "B then"), ("A", "B then"),
-    ("B then", "A then"),
+    ("S_t", "O_t"), ("O_t", "B_t"), ("B_t", "A_t"), ("S_t", "R_t"), ("A_t", "R_t"),
+    ("S_t", "S_t+1"), ("A_t", "S_t+1"), ("S_t+1", "O_t+1"), ("A_t", "O_t+1"),
+    ("O_t+1", "B_t+1"), ("A_t", "B_t+1"), ("B_t+1", "A_t+1"),
 ]  # fmt: skip
-#: What the wires compute, by the letter of the tuple; SE is the state estimator, pi the policy.
-FUNCTIONS = {
-    "T": ("$T$", (2.2, -0.3), "center"),
-    "Omega": ("$O$", (4.95, 0.8), "left"),
-    "reward": ("$R$", (1.1, 0.85), "right"),
-    "SE": ("$SE$", (2.4, 4.15), "center"),
-    "pi": (r"$\pi$", (1.2, 3.45), "center"),
-}
 _ROW = 1.2  # from one belief to the next
 _LARGEST = 30.0  # of the dots of figure 2.13, in points, for a chance of 1
 
@@ -139,11 +123,27 @@ def belief_words(b: ArrayLike) -> str:
     >>> belief_words([0.1, 0.45, 0.0, 0.45]), belief_words([0.0, 1.0])
     ('[.100 .450 .000 .450]', '[.000 1.000]')
     """
-    return "[" + " ".join(_short(p, 3) for p in np.asarray(b)) + "]"
+    return "[" + " ".join(short(p, 3) for p in np.asarray(b)) + "]"
+
+
+def short(p: float, digits: int = 2) -> str:
+    """Return a probability without the zero before its point.
+
+    Examples
+    --------
+    >>> short(0.25), short(0.9996, 3), short(1)
+    ('.25', '1.000', '1.00')
+    """
+    text = f"{p:.{digits}f}"
+    return text[1:] if text.startswith("0.") else text
 
 
 def figure_2_5(ax: Axes | None = None) -> Diagram:
-    """Draw figure 2.5, a POMDP in time: what acts on what.
+    """Draw figure 2.5, a POMDP from one moment to the next.
+
+    Circles are states, observations and beliefs, squares actions, diamonds rewards; an arrow leads
+    from what decides to what is decided. T, O, R and SE stand where the tuple and the state
+    estimator work.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def figure_2_5(ax: Axes | None = None) -> Diagram:
     Returns
     -------
     Diagram
-        ``ax``, ``parts`` and ``wires``; a wire runs from a cause to its effect.
+        ``ax``, ``parts`` and ``wires``, by names like "S_t" and "S_t+1".
 
     References
     ----------
@@ -163,26 +163,24 @@ def figure_2_5(ax: Axes | None = None) -> Diagram:
     --------
     >>> from matplotlib.figure import Figure
     >>> plot = figure_2_5(Figure().subplots())
-    >>> sorted(cause for cause, effect in plot.wires if effect == "B then")
-    ['A', 'B', 'O then']
+    >>> sorted(cause for cause, effect in plot.wires if effect == "B_t+1")
+    ['A_t', 'B_t', 'O_t+1']
     """
     title = "POMDP: the state is hidden; the belief is made of what was done and observed"
     ax = blank(ax, title, (-1.7, 8.0), (-0.9, 4.7))
-    ax.axhspan(-0.6, 0.6, color=style.CELLS[0], zorder=-2)
+    ax.axhspan(-0.6, 0.6, color=style.CELLS[1], zorder=-2)
     ax.text(7.9, 0.0, "hidden", ha="right", va="center", color=style.QUIET)
-    parts = {name: node(ax, place, text) for name, (text, place) in NODES.items()}
-    wires = {(start, end): _between(ax, start, end) for start, end in CAUSES}
-    left, right = NODES["B"][1], NODES["B then"][1]
-    over = left[1] + 0.95
-    wires["B", "B then"] = wire(
-        ax,
-        (left[0], left[1] + 0.36),
-        (left[0], over),
-        (right[0], over),
-        (right[0], right[1] + 0.36),
-    )
-    for name, (text, place, side) in FUNCTIONS.items():
-        parts[name] = words(ax, place, text, side)
+    parts = {name: moment(ax, name, place) for name, place in PLACES.items()}
+    wires = {(start, end): link(ax, PLACES, start, end) for start, end in CAUSES}
+    (x, y), (to_x, _), over = PLACES["B_t"], PLACES["B_t+1"], PLACES["B_t"][1] + 0.95
+    wires["B_t", "B_t+1"] = wire(ax, (x, y + 0.34), (x, over), (to_x, over), (to_x, y + 0.34))
+    for start, end in (("B_t", "A_t"), ("B_t+1", "A_t+1")):
+        wires[start, end].set(linestyle="--", color=style.QUIET)
+    for text, place in (
+        ("T", (2.4, 0.0)), ("O", (4.8, 0.8)), ("R", (1.2, 0.55)), ("SE", (2.4, over)),
+        ("policy", (1.2, y)),
+    ):  # fmt: skip
+        words(ax, place, text, color=style.QUIET)
     return Diagram(ax, parts, wires)
 
 
@@ -243,7 +241,7 @@ def plot_beliefs(
         ax.text(-0.6, foot + 0.3, name, ha="right", va="center", color=style.INK)
         shown = None if printed is None else printed[row]
         for place, p in zip(x, belief, strict=True):
-            ax.text(place, foot + p + 0.04, _short(p), ha="center", va="bottom", fontsize=9)
+            ax.text(place, foot + p + 0.04, short(p), ha="center", va="bottom", fontsize=9)
         if shown is not None:
             marks.append(np.column_stack([x + 0.4, foot + np.asarray(shown)]))
     ax.spines[["left", "bottom"]].set_visible(False)
@@ -354,14 +352,14 @@ def figure_2_8(ax: Axes | None = None, *, p: float = 0.25) -> LinePlot:
     b = [.25 .75]: a point at .25 of the way from surely s2 to surely s1
     """
     p = _checks.number("p", p, 0, 1)
-    title = f"b = [{_short(p)} {_short(1 - p)}]: a point at {_short(p)} of the way "
+    title = f"b = [{short(p)} {short(1 - p)}]: a point at {short(p)} of the way "
     ax = _belief_line(ax, title + "from surely s2 to surely s1", (-0.5, 0.6), (6.4, 1.9))
     (line,) = ax.plot([0, 1], [0, 0], color=style.INK, linewidth=2)
     (mark,) = ax.plot(p, 0, "o", color=style.OURS, markersize=11)
     for x, text in ((0, "surely $s_2$"), (1, "surely $s_1$")):
         ax.plot(x, 0, "|", color=style.INK, markersize=14, markeredgewidth=2)
         ax.annotate(text, (x, 0), (0, -22), textcoords="offset points", ha="center")
-    ax.annotate(f"{_short(p)}", (p, 0), (0, 10), textcoords="offset points", ha="center",
+    ax.annotate(f"{short(p)}", (p, 0), (0, 10), textcoords="offset points", ha="center",
                 color=style.OURS)  # fmt: skip
     return LinePlot(ax, line, mark)
 
@@ -404,7 +402,7 @@ def figure_2_13(ax: Axes | None = None, *, p: float = 0.4) -> SuccessorsPlot:
         (-1.75, 1.75), (6.4, 3.4),
     )  # fmt: skip
     drawn = {}
-    for a, (row, color) in enumerate(zip((1, -1), style.ACTIONS.values(), strict=False)):
+    for a, (row, color) in enumerate(zip((1, -1), style.action_colors(pomdp.actions), strict=True)):
         ax.plot([0, 1], [row, row], color=style.QUIET, linewidth=1)
         ax.text(-0.04, row, pomdp.actions[a], ha="right", va="center", color=color)
         chances, beliefs = successors(pomdp, [p, 1 - p], a)
@@ -413,7 +411,7 @@ def figure_2_13(ax: Axes | None = None, *, p: float = 0.4) -> SuccessorsPlot:
             (dot,) = ax.plot(x, row, "o", color=color, markersize=_LARGEST * chance**0.5)
             drawn[pomdp.actions[a], name] = dot
             ax.annotate(
-                f"{name}\n{_short(chance)}", (x, row), (0, 14 * row), textcoords="offset points",
+                f"{name}\n{short(chance)}", (x, row), (0, 14 * row), textcoords="offset points",
                 ha="center", va="bottom" if row > 0 else "top", fontsize=9,
             )  # fmt: skip
     ax.plot([0, 1], [0, 0], color=style.QUIET, linewidth=1)
@@ -524,11 +522,6 @@ def plot_calibration(
     return CalibrationPlot(ax, lines, bands)
 
 
-def _short(p: float, digits: int = 2) -> str:
-    text = f"{p:.{digits}f}"
-    return text[1:] if text.startswith("0.") else text
-
-
 def _belief_line(
     ax: Axes | None, title: str, ylim: tuple[float, float], size: tuple[float, float]
 ) -> Axes:
@@ -539,10 +532,3 @@ def _belief_line(
     ax.spines["left"].set_visible(False)
     ax.set(xlim=(-0.12, 1.06), ylim=ylim, yticks=[], xticks=np.linspace(0, 1, 5))
     return ax
-
-
-def _between(ax: Axes, start: str, end: str) -> FancyArrowPatch:
-    """Draw a wire from the rim of one node of figure 2.5 to the rim of another."""
-    one, other = (np.array(NODES[name][1]) for name in (start, end))
-    along = 0.36 * (other - one) / np.linalg.norm(other - one)
-    return wire(ax, tuple(one + along), tuple(other - along))

@@ -11,14 +11,16 @@ a look becomes a step
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.patches import Circle, FancyArrowPatch, FancyBboxPatch, Rectangle
+from matplotlib.patches import Circle, FancyArrowPatch, FancyBboxPatch, Rectangle, RegularPolygon
 from matplotlib.path import Path
 from matplotlib.text import Text
+from numpy.typing import NDArray
 
 from . import style
 
@@ -112,6 +114,52 @@ def node(ax: Axes, place: Place, text: str) -> Text:
     """
     ax.add_patch(Circle(place, 0.34, facecolor=style.CELLS[0], edgecolor=style.INK))
     return ax.text(*place, text, ha="center", va="center", fontsize=10, color=style.INK)
+
+
+def moment(ax: Axes, name: str, place: Place) -> Text:
+    """Draw a variable at a moment, such as "A_t+1": actions are squares, rewards diamonds.
+
+    All others (states, observations, beliefs) are circles.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> moment(Figure().subplots(), "A_t+1", (0, 0)).get_text()
+    '$A_{t+1}$'
+    """
+    letter, index = name.split("_")
+    text = f"${letter}_{{{index}}}$"
+    if letter not in "AR":
+        return node(ax, place, text)
+    radius, turned = (0.31 * np.sqrt(2), np.pi / 4) if letter == "A" else (0.42, 0)
+    look = {"facecolor": style.CELLS[0], "edgecolor": style.INK}
+    ax.add_patch(RegularPolygon(place, 4, radius=radius, orientation=turned, **look))
+    return ax.text(*place, text, ha="center", va="center", fontsize=10, color=style.INK)
+
+
+def link(ax: Axes, places: Mapping[str, Place], start: str, end: str) -> FancyArrowPatch:
+    """Draw a straight wire from the rim of one `moment` to the rim of another.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> ax = Figure().subplots()
+    >>> link(ax, {"S_t": (0, 0), "A_t": (2, 0)}, "S_t", "A_t") in ax.patches
+    True
+    """
+    one, other = np.array(places[start]), np.array(places[end])
+    along = (other - one) / np.hypot(*(other - one))
+    (x, y), (to_x, to_y) = one + _rim(start, along), other + _rim(end, -along)
+    return wire(ax, (x, y), (to_x, to_y))
+
+
+def _rim(name: str, along: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return how far a moment reaches in a direction of length 1."""
+    if name[0] == "A":
+        return 0.31 * along / np.abs(along).max()
+    if name[0] == "R":
+        return 0.42 * along / np.abs(along).sum()
+    return 0.34 * along
 
 
 def frame(ax: Axes, corner: Place, width: float, height: float) -> Rectangle:

@@ -22,7 +22,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import FillBetweenPolyCollection, PolyCollection
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.lines import Line2D
-from matplotlib.patches import Circle, FancyArrowPatch, RegularPolygon
+from matplotlib.patches import Circle, FancyArrowPatch
 from matplotlib.path import Path
 from matplotlib.text import Text
 from numpy.typing import ArrayLike, NDArray
@@ -31,7 +31,7 @@ from .. import _checks
 from ..mdp import MDP
 from ..mdp.grid import MOVES, WALL, Grid
 from . import style
-from .diagram import Diagram, Place, blank, node, wire, words
+from .diagram import Diagram, Place, blank, link, moment, words
 
 # --- figure 2.3 -----------------------------------------------------------------------------------
 
@@ -75,13 +75,10 @@ def figure_2_3(ax: Axes | None = None) -> Diagram:
         flow += [(f"S_{t}", f"A_{t}"), (f"S_{t}", f"R_{t}"), (f"A_{t}", f"R_{t}")]
         if before:
             flow += [(f"S_{before}", f"S_{t}"), (f"A_{before}", f"S_{t}")]
-    parts = {name: _moment(ax, name, place) for name, place in places.items()}
+    parts = {name: moment(ax, name, place) for name, place in places.items()}
     wires = {}
     for start, end in flow:
-        one, other = np.array(places[start]), np.array(places[end])
-        along = (other - one) / np.hypot(*(other - one))
-        (x, y), (to_x, to_y) = one + _rim(start, along), other + _rim(end, -along)
-        wires[start, end] = wire(ax, (x, y), (to_x, to_y))
+        wires[start, end] = link(ax, places, start, end)
         if start[0] == "S" and end[0] == "A":
             wires[start, end].set(linestyle="--", color=style.QUIET)
     for text, place in (
@@ -93,28 +90,6 @@ def figure_2_3(ax: Axes | None = None) -> Diagram:
     for row, text in enumerate(("circle: state", "square: action", "diamond: reward")):
         words(ax, (7.8, -2.4 - 0.42 * row), text, "left", color=style.QUIET)
     return Diagram(ax, parts, wires)
-
-
-def _moment(ax: Axes, name: str, place: Place) -> Text:
-    """Draw a state, an action or a reward, by its letter, with its moment as index."""
-    letter, moment = name.split("_")
-    text = f"${letter}_{{{moment}}}$"
-    if letter == "S":
-        return node(ax, place, text)
-    half, turned = (0.31, np.pi / 4) if letter == "A" else (0.42, 0)
-    radius = half * np.sqrt(2) if letter == "A" else half
-    look = {"facecolor": style.CELLS[0], "edgecolor": style.INK}
-    ax.add_patch(RegularPolygon(place, 4, radius=radius, orientation=turned, **look))
-    return ax.text(*place, text, ha="center", va="center", fontsize=10, color=style.INK)
-
-
-def _rim(name: str, along: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return how far a node reaches in a direction of length 1."""
-    if name[0] == "S":
-        return 0.34 * along
-    if name[0] == "A":
-        return 0.31 * along / np.abs(along).max()
-    return 0.42 * along / np.abs(along).sum()
 
 
 # --- figure 2.4 -----------------------------------------------------------------------------------
