@@ -6,6 +6,7 @@ and one canvas that draws any scene.
 
 from .explorer import Buttons, CanvasView, Drag, Explorer
 from .kalman import kalman_explorer
+from .learning import bandit_explorer, horizon_explorer
 from .resonance import letters_explorer, resonance_explorer
 from .vigilance import vigilance_explorer
 
@@ -14,6 +15,8 @@ __all__ = [
     "CanvasView",
     "Drag",
     "Explorer",
+    "bandit_explorer",
+    "horizon_explorer",
     "kalman_explorer",
     "letters_explorer",
     "resonance_explorer",

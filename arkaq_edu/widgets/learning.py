@@ -1,0 +1,387 @@
+"""Two explorers of chapter 1: what "best" means, and a bandit to play by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from itertools import groupby
+from typing import Any, NamedTuple
+
+import ipywidgets
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _checks
+from ..figures import style
+from ..figures.learning import CHAIN_COLORS, CHAINS, SERIES, earnings
+from ..mdp import (
+    UCB,
+    Bandit,
+    Boltzmann,
+    EpsilonGreedy,
+    Random,
+    delayed_rewards,
+    discounted,
+    finite_horizon,
+    play,
+    regret,
+)
+from .explorer import Buttons, Explorer
+from .kalman import Band
+from .scene import Layer, Line, Panel, Points, Scene, Text
+
+LONGEST = 30  # steps: where the slider of the horizon ends
+GAMMAS = tuple(step / 100 for step in range(100))  # the stops of the slider of gamma
+
+#: The names on the buttons; machine i of the bandit is the i-th.
+MACHINES = ("machine 1", "machine 2", "machine 3", "machine 4")
+#: What has been pressed when the explorer opens: every machine three times.
+OPENING = MACHINES * 3
+#: The ways to play beside the student's, as the classes set them.
+STRATEGIES = {
+    "random": Random(),
+    "epsilon-greedy": EpsilonGreedy(),
+    "Boltzmann": Boltzmann(),
+    "UCB": UCB(),
+}
+PLAYERS = 300  # so many play each strategy on the same machines
+
+_LENGTHS = (40, 100, 200, 500, 1000)  # pulls: where the axis of a game ends
+_WIDE: dict[str, Any] = {
+    "layout": {"width": "min(100%, 36em)"}, "style": {"description_width": "9em"},
+}  # fmt: skip
+
+
+def horizon_explorer() -> Explorer:
+    """Return sliders for horizon and discount above the three models of optimality.
+
+    The choice is that of figure 2.2: three chains, which pay 2, 10 and 11 a step, the better the
+    later.
+
+    Returns
+    -------
+    Explorer
+        Its sliders are ``controls["h"]``, in steps, and ``controls["gamma"]``.
+
+    References
+    ----------
+    Thesis, equations 2.1 to 2.3 and figure 2.2, at whose numbers it starts.
+
+    Examples
+    --------
+    >>> explorer = horizon_explorer()
+    >>> explorer
+    h = 5: upper (6, 0, 0); gamma = 0.9: middle (16.2, 59, 58.5); average: lower (2, 10, 11)
+    >>> explorer.controls["h"].value = 6
+    >>> explorer.drawn.fact.split(";")[0]
+    'h = 6: middle (8, 10, 0)'
+    """
+    return Explorer(
+        draw_models,
+        h=ipywidgets.IntSlider(5, min=1, max=LONGEST, description="horizon h (steps)", **_WIDE),
+        gamma=ipywidgets.FloatSlider(
+            0.9, min=GAMMAS[0], max=GAMMAS[-1], step=0.01, description="discount gamma", **_WIDE
+        ),
+    )
+
+
+def draw_models(h: int, gamma: float) -> Scene:
+    """Return the picture for a horizon and a discount: a panel for each model.
+
+    All three show rewards per step, so that they share an axis: the sum of h rewards over h, the
+    discounted sum times 1 - gamma. That changes no choice.
+
+    Parameters
+    ----------
+    h : int
+        The horizon in steps, 1 to `LONGEST`.
+    gamma : float
+        The discount rate, one of `GAMMAS`.
+
+    Returns
+    -------
+    Scene
+    """
+    gamma = round(gamma, 2)  # a slider's steps add up to 0.9000000000000001
+    earned = earnings(_checks.integer("h", h, 1, LONGEST), gamma)
+    finite, geometric = _curves()
+    told = [f"{_chosen(row)} ({', '.join(f'{x:.3g}' for x in row)})" for row in earned]
+    fact = f"h = {h}: {told[0]}; gamma = {gamma:g}: {told[1]}; average: {told[2]}"
+    summed = "one reward" if h == 1 else f"sum of {h} rewards"
+    panels = [
+        _model(
+            ("horizon h (steps)", "sum of h rewards / h"),
+            np.arange(1, LONGEST + 1), finite, h, summed, earned[0],
+        ),
+        _model(
+            ("discount gamma", "(1 − gamma) × discounted sum"),
+            np.array(GAMMAS), geometric, gamma, "discounted sum", earned[1],
+        ),
+        _averages(earned[2]),
+    ]  # fmt: skip
+    return Scene(fact, panels)
+
+
+@cache
+def _curves() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return reward per step of each chain: at each horizon, at each discount."""
+    delays, rewards = zip(*CHAINS.values(), strict=True)
+    steps = np.arange(1, LONGEST + 1)
+    finite = finite_horizon(delayed_rewards(delays, rewards), LONGEST)[:, 0] / steps[:, None]
+    geometric = [(1 - g) * discounted(delayed_rewards(delays, rewards, g))[0] for g in GAMMAS]
+    return finite, np.array(geometric)
+
+
+def _chosen(earned: NDArray[np.float64]) -> str:
+    """Return which chain earns most, or which together."""
+    best = np.isclose(earned, earned.max())
+    if best.all():
+        return "any"
+    return " or ".join(name for name, is_best in zip(CHAINS, best, strict=True) if is_best)
+
+
+def _model(
+    labels: tuple[str, str],
+    x: NDArray[Any],
+    curves: NDArray[np.float64],
+    now: float,
+    head: str,
+    earned: NDArray[np.float64],
+) -> Panel:
+    """Return a panel with a curve for each chain, the present marked, the choice at its foot."""
+    at = int(np.abs(x - now).argmin())
+    left, right = float(x[0]), float(x[-1])
+    pad = 0.03 * (right - left)
+    best = np.isclose(curves, curves.max(axis=1, keepdims=True))
+    layers = _strip(x, best)
+    layers.append(Line([now, now], [-0.3, curves[at].max()], style.QUIET, 1.0, dashed=True))
+    layers.append(Text(left + 0.4 * pad, 11.3, head))
+    for i, (name, color) in enumerate(CHAIN_COLORS.items()):
+        y = 10.4 - 0.85 * i
+        layers += [
+            Line(x, curves[:, i], color, 2.0),
+            Points([now], curves[at, i : i + 1], 6.5 if best[at, i] else 3.5, color),
+            Points([left + pad], [y], 4.0, color),
+            Text(left + 2.5 * pad, y, f"{name}: {earned[i]:.3g}"),
+        ]
+    return Panel(
+        *labels, (left - pad, right + pad), (-1.0, 12.0), layers, width=1.25,
+        yticks=[0, 2, 4, 6, 8, 10, 12],
+    )  # fmt: skip
+
+
+def _strip(x: NDArray[Any], best: NDArray[np.bool_]) -> list[Layer]:
+    """Return the strip at the foot: the colour of the chain that is chosen, grey for a tie."""
+    edges = np.concatenate([x[:1], (x[1:] + x[:-1]) / 2, x[-1:]]).astype(float)
+    strip: list[Layer] = []
+    start = 0
+    for chosen, run in groupby(map(tuple, best)):
+        end = start + len(list(run))
+        colors = [c for c, is_best in zip(CHAIN_COLORS.values(), chosen, strict=True) if is_best]
+        color = colors[0] if len(colors) == 1 else "#c9c9c9"
+        strip.append(Line([edges[start], edges[end]], [-0.55, -0.55], color, 9.0))
+        start = end
+    return strip
+
+
+def _averages(earned: NDArray[np.float64]) -> Panel:
+    layers: list[Layer] = []
+    for x, color in zip(earned, CHAIN_COLORS.values(), strict=True):
+        layers.append(Points([0.3], [x], 6.5 if x == earned.max() else 3.5, color))
+        layers.append(Text(0.55, x, f"{x:g}"))
+    return Panel(
+        "any h, any gamma", "average reward", (0, 1), (-1.0, 12.0), layers, width=0.6,
+        xticks=[], yticks=[0, 2, 4, 6, 8, 10, 12],
+    )  # fmt: skip
+
+
+class Game(NamedTuple):
+    """What a student has done: the machines, which were pulled, and what each pull paid."""
+
+    bandit: Bandit
+    arms: NDArray[np.int64]
+    rewards: NDArray[np.float64]
+
+
+def bandit_explorer() -> Explorer:
+    """Return buttons for four gambling machines, above the student's regret and that of others.
+
+    Beside the student play `PLAYERS` players of each of the `STRATEGIES`, on the same machines and
+    as many pulls. What a press pays depends on the number of the machines and on what was pressed
+    before, on nothing else. Other machines start a new game.
+
+    Returns
+    -------
+    Explorer
+        Its controls are ``controls["machines"]``, a number for each set of machines; the buttons
+        ``controls["pulls"]``; and the box ``controls["reveal"]``, which shows the chances and takes
+        the luck out of the regret.
+
+    References
+    ----------
+    Thesis, section 2.1.3.
+
+    Examples
+    --------
+    >>> explorer = bandit_explorer()
+    >>> explorer
+    12 pulls, 7 coins: regret 2.8 with luck; random 3.0, epsilon-greedy 2.4, Boltzmann 2.0, UCB 2.3
+    >>> explorer.controls["pulls"].press("machine 1")
+    >>> explorer.drawn.fact.split(",")[0]
+    '13 pulls'
+    """
+    machines = ipywidgets.IntSlider(3, min=1, max=30, description="machines no.", **_WIDE)
+    pulls = Buttons(MACHINES, value=OPENING)
+    reveal = ipywidgets.Checkbox(False, description="show their chances", indent=False)
+
+    def new_game(_: Any) -> None:
+        pulls.value, reveal.value = (), False
+
+    machines.observe(new_game, names="value")
+    return Explorer(draw_bandit, machines=machines, pulls=pulls, reveal=reveal)
+
+
+def game(machines: int, pulls: Sequence[str]) -> Game:
+    """Return what a history of presses has paid.
+
+    Parameters
+    ----------
+    machines : int
+        Which machines; each number has its own chances, and its own luck.
+    pulls : sequence of str
+        Names of `MACHINES` in the order in which they were pressed.
+
+    Returns
+    -------
+    Game
+
+    Examples
+    --------
+    >>> long = game(1, MACHINES * 2).rewards
+    >>> bool((game(1, MACHINES).rewards == long[:4]).all())
+    True
+    """
+    chances, luck = np.random.default_rng(machines).spawn(2)
+    bandit = Bandit(chances.uniform(0.1, 0.9, len(MACHINES)).round(2))
+    arms = np.array([MACHINES.index(name) for name in pulls], dtype=np.int64)
+    # One number of the luck for each pull, in their order: what comes later changes nothing.
+    return Game(bandit, arms, bandit.pull(arms, luck))
+
+
+def draw_bandit(machines: int, pulls: Sequence[str], reveal: bool) -> Scene:
+    """Return the picture of a game: the machines on the left, all regrets on the right.
+
+    Parameters
+    ----------
+    machines, pulls
+        As `game` takes them.
+    reveal : bool
+        Whether the chances of the machines are shown, and regret is counted without luck.
+
+    Returns
+    -------
+    Scene
+    """
+    played = game(machines, pulls)
+    best, n = played.bandit.best, len(pulls)
+    length = next((length for length in _LENGTHS if length >= n), n)
+    earned = played.bandit.p[played.arms] if reveal else played.rewards
+    yours = np.append(0.0, regret(earned, best)) if n else np.zeros(1)
+    others = crowd(machines, length, luck=not reveal)
+    if n:
+        ends = ", ".join(f"{name} {mean[n]:.1f}" for name, (mean, _) in others.items())
+        fact = (
+            f"{_count(n, 'pull')}, {_count(int(played.rewards.sum()), 'coin')}: regret "
+            f"{yours[-1]:.1f} with{'out' * reveal} luck; {ends}"
+        )
+    else:
+        fact = "no pull yet: which of the four machines pays best?"
+    return Scene(fact, [_machines(played, reveal), _regrets(yours, others, length, reveal)])
+
+
+@cache
+def crowd(
+    machines: int, length: int, *, luck: bool
+) -> dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]:
+    """Return mean and standard deviation of the regret of the players of each strategy.
+
+    Parameters
+    ----------
+    machines : int
+        Which machines, as `game` takes them.
+    length : int
+        How many pulls, at least 1; fewer are the beginning of more.
+    luck : bool
+        Whether regret counts what the pulls paid, or what they pay on average.
+
+    Returns
+    -------
+    dict of str to (mean, std), each of shape (length + 1,)
+        After no pull, after one, ...
+
+    Examples
+    --------
+    >>> {name: float(mean[40].round(1)) for name, (mean, std) in crowd(3, 40, luck=False).items()}
+    {'random': 9.4, 'epsilon-greedy': 6.6, 'Boltzmann': 6.6, 'UCB': 7.3}
+    """
+    bandit = game(machines, ()).bandit
+    lots = np.random.default_rng(machines).spawn(2 + len(STRATEGIES))[2:]
+    found = {}
+    for (name, strategy), rng in zip(STRATEGIES.items(), lots, strict=True):
+        played = play(bandit, strategy, length, players=PLAYERS, rng=rng)
+        so_far = regret(played.rewards if luck else played.expected, bandit.best)
+        found[name] = (
+            np.append(0.0, so_far.mean(axis=0)),
+            np.append(0.0, so_far.std(axis=0)),
+        )
+    return found
+
+
+def _count(n: int, what: str) -> str:
+    return f"{n} {what}{'s' * (n != 1)}"
+
+
+def _machines(played: Game, reveal: bool) -> Panel:
+    layers: list[Layer] = []
+    for i, p in enumerate(played.bandit.p.tolist()):
+        paid = played.rewards[played.arms == i]
+        if paid.size:
+            layers.append(Points([i + 1], [paid.mean()], 6.0, hollow=True))
+        tally = f"{paid.sum():.0f} of {paid.size}"
+        layers.append(Text(i + 1 - 0.045 * len(tally), 1.1, tally))
+        if reveal:
+            layers.append(Line([i + 0.75, i + 1.25], [p, p], style.OURS, 3.0))
+            layers.append(Text(i + 0.75, p + 0.045, f"{p:.2f}", style.OURS))
+    return Panel(
+        "machine", "paid on average (coins a pull)", (0.4, 4.6), (-0.05, 1.18), layers,
+        xticks=[1, 2, 3, 4], yticks=[0, 0.2, 0.4, 0.6, 0.8, 1],
+    )  # fmt: skip
+
+
+def _regrets(
+    yours: NDArray[np.float64],
+    others: dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]],
+    length: int,
+    reveal: bool,
+) -> Panel:
+    n = len(yours) - 1
+    k = np.arange(n + 1.0)
+    top = max(1.7 * float(others["random"][0][-1]), 1.1 * float(yours.max()), 5.0)
+    ends, heights = (0.0, 1.03 * length), (-0.15 * top, top)
+    bands: list[Layer] = []
+    lines: list[Layer] = []
+    told = {"you": (yours[n], 0.0)} | {name: (m[n], s[n]) for name, (m, s) in others.items()}
+    colors = dict(zip([*others, "you"], SERIES, strict=True))
+    for name, (mean, std) in others.items():
+        low, high = (mean - std)[: n + 1], (mean + std)[: n + 1]
+        outline = np.column_stack([np.append(k, k[::-1]), np.append(high, low[::-1])])
+        bands.append(Band([outline], [0], (*ends, *heights), colors[name] + "2b"))
+        lines.append(Line(k, mean[: n + 1], colors[name], 1.6))
+    lines += [Line(k, yours, style.OURS, 2.6), Points([n], yours[-1:], 5.0, style.OURS)]
+    for row, (name, (mean, std)) in enumerate(told.items()):
+        y = top * (0.95 - 0.075 * row)
+        spread = "" if name == "you" else f" ± {std:.1f}"
+        lines.append(Line([0.02 * length, 0.07 * length], [y, y], colors[name], 2.6))
+        lines.append(Text(0.09 * length, y, f"{name}: {mean:.1f}{spread}"))
+    ylabel = f"regret so far (coins), with{'out' * reveal} luck"
+    return Panel("pulls so far", ylabel, ends, heights, [*bands, *lines], width=1.45)
