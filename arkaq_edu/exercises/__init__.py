@@ -9,6 +9,7 @@ from .approach import check_backup, check_boltzmann, check_reward
 from .art import check_choose, check_match, check_norm_r
 from .belief import check_chances, check_correct, check_expected_reward, check_predict
 from .kalman import check_combine, check_nis, check_turn
+from .learning import check_discounted_sum, check_epsilon_greedy, check_finite_sum, check_regret
 from .segmentation import check_nearest, check_present, check_scale
 
 __all__ = [
@@ -19,13 +20,17 @@ __all__ = [
     "check_choose",
     "check_combine",
     "check_correct",
+    "check_discounted_sum",
+    "check_epsilon_greedy",
     "check_expected_reward",
+    "check_finite_sum",
     "check_match",
     "check_nearest",
     "check_nis",
     "check_norm_r",
     "check_predict",
     "check_present",
+    "check_regret",
     "check_reward",
     "check_scale",
     "check_turn",

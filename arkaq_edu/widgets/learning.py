@@ -26,6 +26,7 @@ from ..mdp import (
     play,
     regret,
 )
+from ..mdp.bandits import Strategy
 from .explorer import Buttons, Explorer
 from .kalman import Band
 from .scene import Layer, Line, Panel, Points, Scene, Text
@@ -38,7 +39,7 @@ MACHINES = ("machine 1", "machine 2", "machine 3", "machine 4")
 #: What has been pressed when the explorer opens: every machine three times.
 OPENING = MACHINES * 3
 #: The ways to play beside the student's, as the classes set them.
-STRATEGIES = {
+STRATEGIES: dict[str, Strategy] = {
     "random": Random(),
     "epsilon-greedy": EpsilonGreedy(),
     "Boltzmann": Boltzmann(),
