@@ -28,8 +28,7 @@ from ..mdp import (
 )
 from ..mdp.bandits import Strategy
 from .explorer import Buttons, Explorer
-from .kalman import Band
-from .scene import Layer, Line, Panel, Points, Scene, Text
+from .scene import Cells, Layer, Line, Panel, Points, Scene, Text
 
 LONGEST = 30  # steps: where the slider of the horizon ends
 GAMMAS = tuple(step / 100 for step in range(100))  # the stops of the slider of gamma
@@ -376,7 +375,7 @@ def _regrets(
     for name, (mean, std) in others.items():
         low, high = (mean - std)[: n + 1], (mean + std)[: n + 1]
         outline = np.column_stack([np.append(k, k[::-1]), np.append(high, low[::-1])])
-        bands.append(Band([outline], [0], (*ends, *heights), colors[name] + "2b"))
+        bands.append(Cells([outline], [0], (*ends, *heights), [colors[name] + "2b"], border=0))
         lines.append(Line(k, mean[: n + 1], colors[name], 1.6))
     lines += [Line(k, yours, style.OURS, 2.6), Points([n], yours[-1:], 5.0, style.OURS)]
     for row, (name, (mean, std)) in enumerate(told.items()):
