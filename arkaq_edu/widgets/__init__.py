@@ -4,6 +4,7 @@ Every explorer is an `Explorer`: plain controls, a plain function from their val
 and one canvas that draws any scene.
 """
 
+from .belief import belief_explorer
 from .explorer import Buttons, CanvasView, Drag, Explorer
 from .kalman import kalman_explorer
 from .learning import bandit_explorer, horizon_explorer
@@ -16,6 +17,7 @@ __all__ = [
     "Drag",
     "Explorer",
     "bandit_explorer",
+    "belief_explorer",
     "horizon_explorer",
     "kalman_explorer",
     "letters_explorer",
