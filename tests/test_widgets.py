@@ -246,7 +246,7 @@ def test_a_stored_notebook_shows_the_picture_and_the_fact(explored):
 
 def test_matplotlib_and_the_canvas_agree_on_the_axes():
     layers = [Points([0.3], [2000.0], hollow=True), Text(0.1, 10, "far")]
-    panel = Panel("rad", "mm", (0.5, -0.5), (10, 4000), layers, log=False, yticks=[10, 4000])
+    panel = Panel("rad", "mm", (0.5, -0.5), (10, 4000), layers, log="y", yticks=[10, 4000])
     layout, _ = Scene("a view", [panel]).pack()
     sent = layout["panels"][0]
     assert sent["yticks"] == [[10.0, "10"], [4000.0, "4,000"]]
@@ -258,6 +258,7 @@ def test_matplotlib_and_the_canvas_agree_on_the_axes():
         assert [label.get_text() for label in axis.get_ticklabels()] == [t[1] for t in ticks]
         assert axis.get_ticklocs() == pytest.approx([t[0] for t in ticks])
     assert (ax.get_xlim(), ax.get_ylim()) == ((0.5, -0.5), (10, 4000))
+    assert (ax.get_xscale(), ax.get_yscale(), sent["log"]) == ("linear", "log", "y")
     assert ax.lines[0].get_markerfacecolor() == "none"
 
 

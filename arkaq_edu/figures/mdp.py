@@ -509,11 +509,13 @@ def _row(i: int) -> float:
 
 # --- values and arrows on a grid ------------------------------------------------------------------
 
-#: From nothing to 100, lighter to darker: `style.OURS` on white.
+#: From 0 to 100, lighter to darker: `style.OURS` on white.
 SHADES = tuple(
-    to_hex((1 - share) + share * np.array(to_rgb(style.OURS))) for share in np.linspace(0, 0.62, 32)
+    to_hex((1 - share) + share * np.array(to_rgb(style.OURS)))
+    for share in np.linspace(0.06, 0.62, 32)
 )
-_WALL, _HOLE, _BALL = style.QUIET, style.INK, "#e8782a"
+#: What is no floor, and what lies on it.
+STONE, HOLE, BALL = style.QUIET, style.INK, "#e8782a"
 _ARROW = np.array(
     [[-0.3, -0.035], [0.08, -0.035], [0.08, -0.13], [0.32, 0], [0.08, 0.13], [0.08, 0.035],
      [-0.3, 0.035]]
@@ -645,7 +647,7 @@ def plot_grid(
     (width, height) = len(grid.plan[0]), len(grid.plan)
     ax = blank(ax, title, (-0.05, width + 0.05), (-0.05, height + 0.05))
     squares = style.cells(floor.squares, [SHADES[shade] for shade in floor.shades], ax)
-    for polygons, color in ((floor.walls, _WALL), (floor.holes, _HOLE), (floor.balls, _BALL)):
+    for polygons, color in ((floor.walls, STONE), (floor.holes, HOLE), (floor.balls, BALL)):
         style.cells(polygons, [color] * len(polygons), ax)
     arrows = style.cells(floor.arrows, [style.INK] * len(floor.arrows), ax)
     arrows.set_linewidth(0)

@@ -8,6 +8,7 @@ from .belief import belief_explorer
 from .explorer import Buttons, CanvasView, Drag, Explorer
 from .kalman import kalman_explorer
 from .learning import bandit_explorer, horizon_explorer
+from .planning import planning_explorer, q_learning_explorer
 from .resonance import letters_explorer, resonance_explorer
 from .vigilance import vigilance_explorer
 
@@ -21,6 +22,8 @@ __all__ = [
     "horizon_explorer",
     "kalman_explorer",
     "letters_explorer",
+    "planning_explorer",
+    "q_learning_explorer",
     "resonance_explorer",
     "vigilance_explorer",
 ]

@@ -65,17 +65,24 @@ const LAYERS = {
 
 // The way from a point of a panel's axes to a pixel of its box, and back.
 function axesOf(panel, box) {
-  const [scale, unscale] = panel.log ? [Math.log, Math.exp] : [(value) => value, (value) => value];
-  const share = (value, [from, to]) => (scale(value) - scale(from)) / (scale(to) - scale(from));
-  const value = (part, [from, to]) => unscale(scale(from) + part * (scale(to) - scale(from)));
+  const axis = (name, [from, to]) => {
+    const same = (value) => value;
+    const [scale, unscale] = panel.log.includes(name) ? [Math.log, Math.exp] : [same, same];
+    const [start, length] = [scale(from), scale(to) - scale(from)];
+    return {
+      share: (value) => (scale(value) - start) / length,
+      value: (share) => unscale(start + share * length),
+    };
+  };
+  const [across, up] = [axis("x", panel.xlim), axis("y", panel.ylim)];
   return {
     at: (x, y) => [
-      box.x + box.width * share(x, panel.xlim),
-      box.y + box.height * (1 - share(y, panel.ylim)),
+      box.x + box.width * across.share(x),
+      box.y + box.height * (1 - up.share(y)),
     ],
     back: (x, y) => [
-      value((x - box.x) / box.width, panel.xlim),
-      value(1 - (y - box.y) / box.height, panel.ylim),
+      across.value((x - box.x) / box.width),
+      up.value(1 - (y - box.y) / box.height),
     ],
   };
 }

@@ -208,7 +208,7 @@ def _nis(trace: KalmanTrace) -> Panel:
         Text(1.15, 0.32, "95 % of right filters", style.QUIET),
     ]
     return Panel(
-        "sightings so far", "mean NIS", ends, _NIS, layers, log=True,
+        "sightings so far", "mean NIS", ends, _NIS, layers, log="xy",
         xticks=[1, 3, 10, 30, 60], yticks=[0.1, 1, 10, 100],
     )  # fmt: skip
 

@@ -160,8 +160,8 @@ class Panel:
         Ends of the axes; the first may be the greater.
     layers : sequence of Cells, Points, Line or Text
         What is drawn.
-    log : bool
-        Whether both axes are logarithmic.
+    log : str
+        The axes that are logarithmic: "x", "y" or "xy".
     xticks, yticks : sequence of float, optional
         Where numbers stand; round ones are chosen where it is None.
     width : float
@@ -175,7 +175,7 @@ class Panel:
     xlim: tuple[float, float]
     ylim: tuple[float, float]
     layers: Sequence[Layer]
-    log: bool = False
+    log: str = ""
     xticks: Sequence[float] | None = None
     yticks: Sequence[float] | None = None
     width: float = 1.0
@@ -194,8 +194,7 @@ class Panel:
     def paint(self, ax: Axes) -> None:
         """Draw with matplotlib."""
         style.axes(ax, xlabel=self.xlabel, ylabel=self.ylabel)
-        if self.log:
-            ax.set(xscale="log", yscale="log")
+        ax.set(**{f"{axis}scale": "log" for axis in self.log})
         ax.set(xlim=self.xlim, ylim=self.ylim)
         for axis, ticks in zip((ax.xaxis, ax.yaxis), self.ticks(), strict=True):
             axis.set_major_locator(FixedLocator(ticks))

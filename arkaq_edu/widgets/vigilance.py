@@ -192,7 +192,7 @@ def _distance_curve(counts: Mapping[float, int], vigilance: float, n: int) -> Pa
         Text(0.079, 1600, "on the left", style.OURS),
     ]
     return Panel(
-        "vigilance (a distance)", "categories", (0.022, 0.22), (15, 5000), layers, log=True,
+        "vigilance (a distance)", "categories", (0.022, 0.22), (15, 5000), layers, log="xy",
         xticks=[0.025, 0.05, 0.1, 0.2], yticks=[30, 100, 300, 1000, 3000],
     )  # fmt: skip
 
