@@ -10,11 +10,13 @@ from .art import check_choose, check_match, check_norm_r
 from .belief import check_chances, check_correct, check_expected_reward, check_predict
 from .kalman import check_combine, check_nis, check_turn
 from .learning import check_discounted_sum, check_epsilon_greedy, check_finite_sum, check_regret
+from .mdp import check_bellman, check_greedy, check_rate, check_td
 from .segmentation import check_nearest, check_present, check_scale
 
 __all__ = [
     "ExerciseError",
     "check_backup",
+    "check_bellman",
     "check_boltzmann",
     "check_chances",
     "check_choose",
@@ -24,14 +26,17 @@ __all__ = [
     "check_epsilon_greedy",
     "check_expected_reward",
     "check_finite_sum",
+    "check_greedy",
     "check_match",
     "check_nearest",
     "check_nis",
     "check_norm_r",
     "check_predict",
     "check_present",
+    "check_rate",
     "check_regret",
     "check_reward",
     "check_scale",
+    "check_td",
     "check_turn",
 ]

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+#: A way of answering that is often taken, and what to say of it.
+Rule = tuple[Callable[..., Any], str]
 
 
 class ExerciseError(AssertionError):
@@ -75,6 +78,52 @@ def numbers(name: str, answer: Any, shape: tuple[int, ...]) -> NDArray[np.float6
     if not np.isfinite(found).all():
         raise ExerciseError(f"{name} returned {_short(found)}: not all of it is a number")
     return found
+
+
+def judge(
+    name: str,
+    function: Callable[..., Any],
+    cases: Sequence[tuple[Any, ...]],
+    right: Callable[..., Any],
+    wrong: Sequence[Rule],
+) -> None:
+    """Pass what `right` answers to all cases; of the rest say which `wrong` it is, or how far off.
+
+    Examples
+    --------
+    >>> double = [(lambda x: x + 2, "you add two"), (lambda x: x**2, "you square")]
+    >>> judge("twice", lambda x: x * x, [(3.0,), (5.0,)], lambda x: 2 * x, double)
+    Traceback (most recent call last):
+    arkaq_edu.exercises._ask.ExerciseError: you square
+    """
+    answers = [ask(function, *case) for case in cases]
+    wanted = [right(*case) for case in cases]
+    good = [_same(answer, value) for answer, value in zip(answers, wanted, strict=True)]
+    if all(good):
+        return
+    # Some wrong answers have another shape, and are better told by what they are.
+    for rule, words in wrong:
+        if all(_same(answer, rule(*case)) for answer, case in zip(answers, cases, strict=True)):
+            raise ExerciseError(words)
+    found = [
+        numbers(name, answer, np.shape(value))
+        for answer, value in zip(answers, wanted, strict=True)
+    ]
+    i = good.index(False)
+    place = np.abs(found[i] - wanted[i]).argmax()
+    yours, ours = found[i].flat[place], np.ravel(wanted[i])[place]
+    raise ExerciseError(
+        f"{name} is right in {sum(good)} of {len(cases)} tries; one of yours, {yours:.5g}, is "
+        f"too {'large' if yours > ours else 'small'}"
+    )
+
+
+def _same(answer: Any, other: Any) -> bool:
+    try:
+        found = np.asarray(answer, dtype=float)
+    except (TypeError, ValueError):
+        return False
+    return found.shape == np.shape(other) and np.allclose(found, other)
 
 
 def _short(value: Any) -> str:

@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._ask import ExerciseError, ask, numbers
+from ._ask import ExerciseError, Rule, ask, judge
 
 Rng = np.random.Generator | int | None
-Rule = tuple[Callable[..., Any], str]
 
 SUMMED = "Right: h rewards, from now on, and not one more."
 DISCOUNTED = "Right: each reward counts gamma times as much as if it came a step sooner."
@@ -53,7 +52,7 @@ last of h is at t = h - 1
     rng = np.random.default_rng(rng)
     cases = [(rng.uniform(0.5, 9, 12).round(1), int(h)) for h in rng.integers(2, 10, 19)]
     cases.append((rng.uniform(0.5, 9, 6).round(1), 6))
-    _judge("finite_sum", finite_sum, cases, _finite_sum, WRONG_SUM)
+    judge("finite_sum", finite_sum, cases, _finite_sum, WRONG_SUM)
     return SUMMED
 
 
@@ -90,7 +89,7 @@ counts gamma to the power of t
     """
     rng = np.random.default_rng(rng)
     cases = [(rng.uniform(0.5, 9, 8).round(1), float(rng.uniform(0.3, 0.95))) for _ in range(20)]
-    _judge("discounted_sum", discounted_sum, cases, _discounted_sum, WRONG_DISCOUNT)
+    judge("discounted_sum", discounted_sum, cases, _discounted_sum, WRONG_DISCOUNT)
     return DISCOUNTED
 
 
@@ -204,44 +203,8 @@ was lost so far
     chances = rng.uniform(0.1, 0.6, (20, 4)).round(2)
     chances[:, 2] = 0.9
     cases = list(zip(chances, arms, strict=True))
-    _judge("regret", regret, cases, _regret, WRONG_REGRET, shape=(9,))
+    judge("regret", regret, cases, _regret, WRONG_REGRET)
     return REGRETTED
-
-
-def _judge(
-    name: str,
-    function: Callable[..., Any],
-    cases: list[tuple[Any, ...]],
-    right: Callable[..., Any],
-    wrong: list[Rule],
-    shape: tuple[int, ...] = (),
-) -> None:
-    """Pass what `right` gives; of the rest say which of the `wrong` ways it is, or how far off."""
-    answers = [ask(function, *case) for case in cases]
-    wanted = [right(*case) for case in cases]
-    good = [_same(answer, value) for answer, value in zip(answers, wanted, strict=True)]
-    if all(good):
-        return
-    # Some wrong answers have another shape, and are better told by what they are.
-    for rule, words in wrong:
-        if all(_same(answer, rule(*case)) for answer, case in zip(answers, cases, strict=True)):
-            raise ExerciseError(words)
-    found = [numbers(name, answer, shape) for answer in answers]
-    i = good.index(False)
-    place = np.abs(found[i] - wanted[i]).argmax()
-    yours, ours = found[i].flat[place], np.ravel(wanted[i])[place]
-    raise ExerciseError(
-        f"{name} is right in {sum(good)} of {len(cases)} tries; one of yours, {yours:.5g}, is "
-        f"too {'large' if yours > ours else 'small'}"
-    )
-
-
-def _same(answer: Any, other: Any) -> bool:
-    try:
-        found = np.asarray(answer, dtype=float)
-    except (TypeError, ValueError):
-        return False
-    return found.shape == np.shape(other) and np.allclose(found, other)
 
 
 def _finite_sum(rewards: NDArray[np.float64], h: int) -> float:
