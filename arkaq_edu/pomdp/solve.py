@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arkaq_edu._checks import integer, number
+from arkaq_edu.pomdp._points import improve
 from arkaq_edu.pomdp.graph import PolicyGraph
 from arkaq_edu.pomdp.model import POMDP
 from arkaq_edu.pomdp.pruning import gain, needed_sums
@@ -131,16 +132,18 @@ def bellman_error(pomdp: POMDP, V: ValueFunction) -> float:
     1.5
     """
     step, lost = backup(pomdp, V.alphas, 0.0)
-    return float(distance(step.alphas, V.alphas) + lost)
+    return float(distance(step.alphas, V.alphas)[0] + lost)
 
 
-def distance(A: Floats, C: Floats) -> float:
-    """Return a certified bound on |max_i b . A[i] - max_j b . C[j]| over all beliefs b."""
-    largest = 0.0
+def distance(A: Floats, C: Floats) -> tuple[float, Floats]:
+    """Return a certified bound on |max_i b . A[i] - max_j b . C[j]|, and the belief where it is."""
+    largest, where = 0.0, np.full(A.shape[1], 1 / A.shape[1])
     for over, under in ((A, C), (C, A)):
         for w in over:
-            largest = max(largest, gain(w, under, low=largest)[0])
-    return largest
+            gained, belief, _ = gain(w, under, low=largest)
+            if gained > largest:
+                largest, where = gained, belief
+    return largest, where
 
 
 def backup(
@@ -200,62 +203,28 @@ def _one_step(pomdp: POMDP) -> ValueFunction:
 def _endless(pomdp: POMDP, tol: float) -> ValueFunction:
     """Iterate until the certified bound is within `tol`."""
     gamma, Z = pomdp.gamma, pomdp.n_observations
-    n = np.arange(pomdp.n_actions)
+    n, corners = np.arange(pomdp.n_actions), np.eye(pomdp.n_states)
     alphas: Floats = PolicyGraph(n, np.repeat(n[:, np.newaxis], Z, axis=1)).values(pomdp)
-    residual = np.inf
-    seeds: Floats = np.eye(pomdp.n_states)
+    wanted = tol * (1 - gamma)
+    residual, seeds = float(np.ptp(pomdp.R)), corners
     while True:
         # Pruning need not be finer than what the iteration still lacks.
-        wanted = tol * (1 - gamma)
-        coarse = max(wanted / 4, min(residual, np.ptp(pomdp.R) + wanted) / 20)
+        coarse = max(wanted / 4, residual / 20)
         step, lost = backup(pomdp, alphas, coarse, seeds)
-        seeds = step.beliefs
-        residual = distance(step.alphas, alphas)
+        residual, where = distance(step.alphas, alphas)
         error = (gamma * residual + lost) / (1 - gamma)
         if error <= tol:
             break
-        alphas = _at_points(pomdp, step, residual * (1 - gamma) / 10)
+        seeds = np.concatenate([step.beliefs, corners, where[np.newaxis]])
+        better = improve(pomdp, step.alphas, seeds, max(residual, wanted) * (1 - gamma) / 10)
+        both = np.concatenate([step.alphas, better])
+        pairs, _ = needed_sums(both, np.zeros((1, pomdp.n_states)), coarse / 10, seeds)
+        alphas = both[np.sort(pairs[:, 0])]
     closed = _close(pomdp, step, alphas, tol)
     if closed is not None:
         return closed
     before = ValueFunction(alphas, np.full(len(alphas), -1), np.empty((len(alphas), 0), np.int64))
     return ValueFunction(step.alphas, step.actions, step.branches, before, error)
-
-
-def _at_points(pomdp: POMDP, step: Backup, enough: float) -> Floats:
-    """Improve V at the beliefs of its vectors; return vectors that are nowhere lower than V."""
-    alphas, points = step.alphas, step.beliefs
-    heights = (points @ alphas.T).max(axis=1)
-    before = None
-    for _ in range(1000):
-        improved, actions, branches = point_backup(pomdp, alphas, points)
-        graph = np.c_[actions, branches]
-        settled = before is not None and len(alphas) == len(points) and (graph == before).all()
-        if settled and len(points) * pomdp.n_states <= 1000:
-            improved = PolicyGraph(actions, branches).values(pomdp)
-        before = graph
-        now = (points @ improved.T).max(axis=1)
-        if not (now - heights).max() > enough:
-            break
-        alphas, heights = improved, now
-    both = np.concatenate([step.alphas, alphas])
-    pairs, _ = needed_sums(both, np.zeros((1, pomdp.n_states)), FINE * np.abs(both).max(), points)
-    return both[np.sort(pairs[:, 0])]
-
-
-def point_backup(pomdp: POMDP, alphas: Floats, points: Floats) -> tuple[Floats, Ints, Ints]:
-    """Return, for each of some beliefs, the vector of H V that is best there, and its choices."""
-    A, Z, N = pomdp.n_actions, pomdp.n_observations, len(points)
-    vectors = np.empty((A, N, pomdp.n_states))
-    branches = np.empty((A, N, Z), np.int64)
-    for a in range(A):
-        joint = (points @ pomdp.T[a])[:, np.newaxis] * pomdp.O[a].T  # (N, Z, S')
-        branches[a] = (joint @ alphas.T).argmax(axis=2)
-        later = np.einsum("tz,nzt->nt", pomdp.O[a], alphas[branches[a]])
-        vectors[a] = pomdp.R[:, a] + pomdp.gamma * later @ pomdp.T[a].T
-    actions = np.einsum("ans,ns->na", vectors, points).argmax(axis=1)
-    rows = np.arange(N)
-    return vectors[actions, rows], actions, branches[actions, rows]
 
 
 def _close(pomdp: POMDP, step: Backup, alphas: Floats, tol: float) -> ValueFunction | None:
@@ -266,6 +235,6 @@ def _close(pomdp: POMDP, step: Backup, alphas: Floats, tol: float) -> ValueFunct
     if len(graph) * pomdp.n_states > 3000:
         return None
     V = ValueFunction(graph.values(pomdp), graph.actions, graph.branches)
-    again, lost = backup(pomdp, V.alphas, tol * (1 - pomdp.gamma) / 4, step.beliefs)
-    error = (distance(again.alphas, V.alphas) + lost) / (1 - pomdp.gamma)
+    again, lost = backup(pomdp, V.alphas, 0.0, step.beliefs)
+    error = (distance(again.alphas, V.alphas)[0] + lost) / (1 - pomdp.gamma)
     return ValueFunction(V.alphas, V.actions, V.branches, None, error) if error <= tol else None
