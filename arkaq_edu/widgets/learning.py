@@ -190,7 +190,7 @@ def _averages(earned: NDArray[np.float64]) -> Panel:
         layers.append(Points([0.3], [x], 6.5 if x == earned.max() else 3.5, color))
         layers.append(Text(0.55, x, f"{x:g}"))
     return Panel(
-        "any h, any gamma", "average reward", (0, 1), (-1.0, 12.0), layers, width=0.6,
+        "any h, any gamma", "average reward", (0, 1), (-1.0, 12.0), layers, width=0.7,
         xticks=[], yticks=[0, 2, 4, 6, 8, 10, 12],
     )  # fmt: skip
 
