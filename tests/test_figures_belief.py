@@ -139,9 +139,10 @@ def test_a_belief_outside_its_line_is_refused(ax, figure, p):
 def test_a_run_shows_the_belief_in_the_truth_and_what_misled_it(ax):
     beliefs = [[0.9, 0.1], [0.3, 0.7], [0.5, 0.5]]
     plot = belief.plot_run(beliefs, [0, 0, 1], [False, True, False], ax)
+    assert plot.on_truth.get_xdata().tolist() == [1, 2, 3]
     assert plot.on_truth.get_ydata().tolist() == [0.9, 0.3, 0.5]
-    assert plot.on_likeliest.get_ydata().tolist() == [0.9, 0.7, 0.5]
-    assert plot.misled.get_xdata().tolist() == [1]
+    assert [line[0, 0] for line in plot.changes.get_segments()] == [3]
+    assert plot.misled.get_xdata().tolist() == [2]
     assert plot.misled.get_markerfacecolor() == "none"
     with pytest.raises(ValueError, match="truth must"):
         belief.plot_run(beliefs, [0, 0], [0, 0, 0], ax)
@@ -149,15 +150,15 @@ def test_a_run_shows_the_belief_in_the_truth_and_what_misled_it(ax):
 
 def test_calibration_is_a_mean_and_a_deviation_over_seeds(ax):
     shares = np.array([[0.5, NAN, 0.9], [0.7, 0.8, 1.0], [0.6, 0.6, 0.8]])
-    plot = belief.plot_calibration([0.55, 0.75, 0.95], {"told": shares}, ax)
+    plot = belief.plot_calibration({"told": ([0.55, 0.75, 0.95], shares)}, ax)
     assert plot.lines["told"].get_ydata() == pytest.approx([0.6, 0.7, 0.9])
     corners = plot.bands["told"].get_paths()[0].vertices
     top = {round(float(x), 9): y for x, y in sorted(map(tuple, corners))}
     std = [np.std([0.5, 0.7, 0.6]), 0.1, np.std([0.9, 1.0, 0.8])]
     assert [top[0.55], top[0.75], top[0.95]] == pytest.approx(np.add([0.6, 0.7, 0.9], std))
     assert plot.lines["told"].get_color() == style.OURS
-    with pytest.raises(ValueError, match="told must have shape"):
-        belief.plot_calibration([0.5], {"told": shares}, ax)
+    with pytest.raises(ValueError, match="right must have shape"):
+        belief.plot_calibration({"told": ([0.5], shares)}, ax)
 
 
 def test_every_figure_makes_its_own_axes():

@@ -13,13 +13,13 @@ two steps right, no goal seen: [.333 .333 .000 .333], [.100 .450 .000 .450], [.1
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import FillBetweenPolyCollection
+from matplotlib.collections import FillBetweenPolyCollection, LineCollection
 from matplotlib.container import BarContainer
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike, NDArray
@@ -91,11 +91,11 @@ class SuccessorsPlot(NamedTuple):
 
 
 class RunPlot(NamedTuple):
-    """What `plot_run` drew: how much of the belief lies on the truth, and on the likeliest."""
+    """What `plot_run` drew: how much of the belief lies on the hidden state, and what hid it."""
 
     ax: Axes
     on_truth: Line2D
-    on_likeliest: Line2D
+    changes: LineCollection
     misled: Line2D
 
     def __repr__(self) -> str:
@@ -456,35 +456,36 @@ def plot_run(
     --------
     >>> from matplotlib.figure import Figure
     >>> plot = plot_run([[0.9, 0.1], [0.5, 0.5]], [1, 1], [True, False], Figure().subplots())
-    >>> plot.on_truth.get_ydata(), plot.on_likeliest.get_ydata()
-    (array([0.1, 0.5]), array([0.9, 0.5]))
+    >>> plot.on_truth.get_ydata(), plot.misled.get_xdata()
+    (array([0.1, 0.5]), array([1]))
     """
     b = _checks.distribution("beliefs", _checks.array("beliefs", beliefs, (None, None)))
     n = len(b)
     truth = _checks.array("truth", truth, (n,)).astype(int)
     wrong = _checks.array("misled", misled, (n,)) > 0
-    ax = style.axes(ax, xlabel="step", ylabel="probability in the belief", title=title)
-    k = np.arange(n)
-    (likeliest,) = ax.plot(k, b.max(axis=1), "--", color=style.QUIET, lw=1.2, label="likeliest")
-    (on_truth,) = ax.plot(k, b[k, truth], color=style.OURS, lw=2, label="hidden state")
-    marks = style.measurements(k[wrong], np.full(wrong.sum(), 1.06), ax, label="look that misled")
-    ax.set(xlim=(-0.5, n - 0.5), ylim=(0, 1.12), yticks=np.linspace(0, 1, 6))
-    ax.legend(frameon=False, loc="lower right")
-    return RunPlot(ax, on_truth, likeliest, marks)
+    ax = style.axes(ax, xlabel="step", ylabel="belief in the hidden state", title=title)
+    k = np.arange(1, n + 1)
+    moved = k[1:][np.diff(truth) != 0]
+    changes = ax.vlines(moved, 0, 1, color=style.INK, linestyle=":", label="the state changes")
+    share = b[k - 1, truth]
+    (on_truth,) = ax.plot(k, share, color=style.OURS, lw=2, marker="o", markersize=3)
+    marks = style.measurements(k[wrong], np.full(wrong.sum(), 1.07), ax, label="a look misleads")
+    ax.set(xlim=(0, n + 1), ylim=(0, 1.13), yticks=np.linspace(0, 1, 6).round(1))
+    ax.legend(frameon=False, loc="upper left", bbox_to_anchor=(1, 1))
+    return RunPlot(ax, on_truth, changes, marks)
 
 
 def plot_calibration(
-    claimed: ArrayLike, right: dict[str, ArrayLike], ax: Axes | None = None, *, title: str = ""
+    curves: Mapping[str, tuple[ArrayLike, ArrayLike]], ax: Axes | None = None, *, title: str = ""
 ) -> CalibrationPlot:
     """Draw how often the likeliest state was right, by how likely the belief had said it was.
 
     Parameters
     ----------
-    claimed : array_like, shape (n,)
-        Probabilities that beliefs gave to their likeliest states.
-    right : dict of str to array_like, shape (seeds, n)
-        For each curve the share of states that were right, a row for each seed; NaN where a
-        seed made no such claim.
+    curves : mapping of str to (claimed, right)
+        Up to two curves by name. ``claimed``, shape (n,): probabilities that a belief gave to its
+        likeliest state. ``right``, shape (seeds, n): how often it was right, a row for each seed;
+        NaN where a seed made no such claim.
     ax : matplotlib.axes.Axes, optional
         Where to draw; fresh axes where it is None.
     title : str
@@ -502,23 +503,26 @@ def plot_calibration(
     Examples
     --------
     >>> from matplotlib.figure import Figure
-    >>> plot = plot_calibration([0.5, 0.9], {"honest": [[0.4, 0.9], [0.6, 0.9]]},
+    >>> plot = plot_calibration({"honest": ([0.5, 0.9], [[0.4, 0.9], [0.6, 0.9]])},
     ...                         Figure().subplots())
     >>> plot.lines["honest"].get_ydata()
     array([0.5, 0.9])
     """
-    claimed = _checks.array("claimed", claimed, (None,))
-    ax = style.axes(ax, xlabel="probability the belief gave its likeliest state",
-                    ylabel="how often that state was right", title=title)  # fmt: skip
+    ax = style.axes(ax, xlabel="what the belief claims for its likeliest state",
+                    ylabel="how often that is the state", title=title)  # fmt: skip
     ax.plot([0, 1], [0, 1], "--", color=style.QUIET, linewidth=1)
-    lines, bands = {}, {}
-    for (name, shares), color in zip(right.items(), (style.OURS, style.INK), strict=False):
-        share = _checks.array(name, shares, (None, len(claimed)), allow_nan=True)
-        mean, std = np.nanmean(share, axis=0), np.nanstd(share, axis=0)
-        lines[name], bands[name] = style.band(claimed, mean, std, ax, color=color, label=name)
-    ends = (claimed.min() - 0.02, 1.0)
-    ax.set(xlim=ends, aspect="equal")
-    ax.legend(frameon=False)
+    lines, bands, least = {}, {}, 1.0
+    for (name, (x, y)), color in zip(curves.items(), (style.OURS, style.INK), strict=False):
+        claimed = _checks.array("claimed", x, (None,))
+        right = _checks.array("right", y, (None, len(claimed)), allow_nan=True)
+        mean, std = np.nanmean(right, axis=0), np.nanstd(right, axis=0)
+        lines[name], bands[name] = style.band(
+            claimed, mean, std, ax, color=color, marker="o", markersize=4, label=name
+        )
+        least = min(least, claimed.min(), (mean - std).min())
+    ends = (least - 0.03, 1.01)
+    ax.set(xlim=ends, ylim=ends, aspect="equal")
+    ax.legend(frameon=False, loc="upper left")
     return CalibrationPlot(ax, lines, bands)
 
 

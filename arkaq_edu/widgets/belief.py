@@ -157,7 +157,7 @@ class Turns(ipywidgets.VBox):
         self.problems, self.seed = problems, seed
         self._shown = ""  # the problem whose buttons stand there
         self.menu = ipywidgets.Dropdown(options=list(problems), description="problem")
-        self.menu.style.description_width = "4em"
+        self.menu.style.description_width = "5em"
         again = _button("start again", lambda: self._set(self.value[:1]))
         self.actions, self.observations = ipywidgets.HBox(), ipywidgets.HBox()
         rows = [ipywidgets.HBox([self.menu, again]), self.actions, self.observations]
@@ -200,7 +200,7 @@ class Turns(ipywidgets.VBox):
                 button.disabled = not waits or button.description not in offered
 
     def _row(self, label: str, names: Iterable[str]) -> list[ipywidgets.Widget]:
-        word = ipywidgets.Label(label, layout={"width": "4em", "justify_content": "flex-end"})
+        word = ipywidgets.Label(label, layout={"width": "5em", "justify_content": "flex-end"})
         return [word, *(_button(name, partial(self.press, name)) for name in names)]
 
 
@@ -314,7 +314,7 @@ def _trail(pomdp: POMDP, way: Walk) -> Panel:
         left = x + 0.04 if beside else x - 0.015 * len(state)
         at = y if beside else y + (0.07 if y > 0.5 else -0.07)
         layers.append(Text(left, at, state, style.QUIET))
-    return Panel("", "", (-0.2, 1.3), (-0.25, 1.1), layers, width=1.1, bare=True)
+    return Panel("", "", (-0.2, 1.3), (-0.25, 1.1), layers, width=1.05, bare=True)
 
 
 def _line(pomdp: POMDP, way: Walk) -> Panel:
@@ -372,16 +372,16 @@ def _chances(pomdp: POMDP, way: Walk) -> Panel:
             chances = way.beliefs[-1] @ pomdp.O[a]
         else:
             continue
-        layers.append(Text(-0.82, y, f"after {pomdp.actions[a]}", style.QUIET))
+        layers.append(Text(-0.92, y, f"after {pomdp.actions[a]}", style.QUIET))
         rows = y - 1 - np.arange(pomdp.n_observations)
         layers.append(_blocks(chances, rows, color))
         for name, p, row in zip(pomdp.observations, chances, rows, strict=True):
-            layers.append(Text(-0.76, row, name))
+            layers.append(Text(-0.86, row, name))
             layers.append(Text(p + 0.03, row, short(p)))
         y = rows[-1] - 1.3
     return Panel(
-        "chance of the observation", "", (-0.85, 1.3), (min(y, -6.0), 0.8), layers,
-        xticks=[0, 0.5, 1], yticks=[],
+        "chance of the observation", "", (-0.95, 1.3), (min(y, -6.0), 0.8), layers,
+        xticks=[0, 0.5, 1], yticks=[], width=1.2,
     )  # fmt: skip
 
 
