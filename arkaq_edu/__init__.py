@@ -38,3 +38,4 @@ _register(
     entry_point="arkaq_edu.envs.ball_approach:BallApproachEnv",
     max_episode_steps=150,
 )
+_register("ScoreGoal-v0", entry_point="arkaq_edu.envs.score_goal:ScoreGoalEnv")

@@ -1,12 +1,15 @@
-"""The camera: pixels first, and from the ball's blob of pixels its distance and orientation.
+"""The camera: pixels first, and from them where the ball and the goal are.
 
-One ray is cast through the centre of a pixel and returns the colour it meets. The whole picture
-is all 33,280 rays; while learning, only those near the ball are cast. Both give the same blob.
+The ball's blob of pixels gives its distance and orientation, the goal's pixels on the horizon
+its orientation and width. One ray is cast through the centre of a pixel and returns the colour it
+meets. The whole picture is all 33,280 rays; while learning, only those that matter are cast. Both
+show the same.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -25,6 +28,7 @@ _N, _SUM_COL, _SUM_ROW, _COL_0, _COL_1, _ROW_0, _ROW_1, _LEFT, _RIGHT, _TOP, _BO
 
 _PANELS, _POSTS = pitch.panels(), pitch.posts()
 _LINES = np.array(pitch.lines())
+_GOAL_ACROSS = pitch.GOAL_WIDTH + 4 * pitch.POST_RADIUS
 _RADIUS, _RADIUS_2 = pitch.BALL_RADIUS, pitch.BALL_RADIUS**2
 
 
@@ -33,6 +37,13 @@ class Sighting(NamedTuple):
 
     distance: float
     orientation: float
+
+
+class GoalSighting(NamedTuple):
+    """What one picture says of the sky-blue goal: its middle's orientation, its width (rad)."""
+
+    orientation: float
+    width: float
 
 
 @kernel
@@ -117,13 +128,24 @@ def _colour(col, row, x, y, z, heading, tilt, bx, by, panels, posts, lines):
 
 
 @kernel
+def _row(row, x, y, z, heading, tilt, bx, by, panels, posts, lines, image):
+    """Cast the rays of one row."""
+    for col in range(WIDTH):
+        image[col] = _colour(col, row, x, y, z, heading, tilt, bx, by, panels, posts, lines)
+
+
+@kernel
+def _column(col, x, y, z, heading, tilt, bx, by, panels, posts, lines, image):
+    """Cast the rays of one column."""
+    for row in range(HEIGHT):
+        image[row] = _colour(col, row, x, y, z, heading, tilt, bx, by, panels, posts, lines)
+
+
+@kernel
 def _picture(x, y, z, heading, tilt, bx, by, panels, posts, lines, image):
     """Cast every ray."""
     for row in range(HEIGHT):
-        for col in range(WIDTH):
-            image[row, col] = _colour(
-                col, row, x, y, z, heading, tilt, bx, by, panels, posts, lines
-            )
+        _row(row, x, y, z, heading, tilt, bx, by, panels, posts, lines, image[row])
 
 
 @kernel
@@ -281,7 +303,7 @@ class Camera:
         self._blob = np.zeros(11)
 
     def sighting(self, world: World) -> Sighting | None:
-        """Return what the camera sees of the ball from where the robot stands.
+        """Return what the camera sees of the ball from where the robot stands and looks.
 
         Parameters
         ----------
@@ -291,14 +313,16 @@ class Camera:
         Returns
         -------
         Sighting or None
-            None where too few pixels show the ball, or its centre lies outside the picture.
+            None where too few pixels show the ball, or its centre lies outside the picture; and
+            while the head moves.
         """
-        x, y, heading = world.pose
-        bx, by = world.ball
-        _blob_of_world(
-            x, y, self.height, heading, self.tilt, bx, by, _PANELS, _POSTS, self._blob
-        )  # fmt: skip
-        return self._sighting()
+        if self.blurred(world):
+            return None
+        _blob_of_world(*self._view(world), _PANELS, _POSTS, self._blob)
+        seen = self._sighting()
+        if seen is None or world.pan == 0.0:
+            return seen
+        return Sighting(seen.distance, seen.orientation + world.pan)
 
     def sighting_in(self, colours: np.ndarray) -> Sighting | None:
         """Return what a rendered picture shows of the ball.
@@ -311,12 +335,71 @@ class Camera:
         Returns
         -------
         Sighting or None
-            The same as `sighting` from the same place.
+            The same as `sighting` from the same place with the head straight.
         """
-        if colours.shape != (HEIGHT, WIDTH):
-            raise ValueError(f"colours must have shape ({HEIGHT}, {WIDTH}), got {colours.shape}")
-        _blob_of_picture(colours, self._blob)
+        _blob_of_picture(self._checked(colours), self._blob)
         return self._sighting()
+
+    def goal(self, world: World) -> GoalSighting | None:
+        """Return what the camera sees of the sky-blue goal.
+
+        The row of the horizon is what lies as high as the lens: above the ball and the walls,
+        below the goal's bar. Its sky-blue pixels are the goal from post to post. Where the frame
+        cuts one side off, the height of the other post's image gives the distance and so the
+        width that the whole goal has, as if it were seen from straight in front.
+
+        Parameters
+        ----------
+        world : World
+            The field as it is now.
+
+        Returns
+        -------
+        GoalSighting or None
+            None where the horizon shows no sky-blue, and while the head moves.
+
+        Examples
+        --------
+        >>> from arkaq_edu.field import World
+        >>> world, camera = World(rng=0), Camera()
+        >>> world.reset(robot=(700.0, 0.0, -0.2), ball=(0.0, 0.0))
+        >>> seen = camera.goal(world)
+        >>> round(seen.orientation, 2), round(seen.width, 2)
+        (0.2, 0.49)
+        """
+        if self.blurred(world):
+            return None
+        view = self._view(world), (_PANELS, _POSTS, _LINES)
+        horizon = np.empty(WIDTH, dtype=np.uint8)
+        _row(self._horizon, *view[0], *view[1], horizon)
+
+        def column(col: int) -> np.ndarray:
+            pixels = np.empty(HEIGHT, dtype=np.uint8)
+            _column(col, *view[0], *view[1], pixels)
+            return pixels
+
+        seen = self._goal(horizon, column)
+        return seen and GoalSighting(seen.orientation + world.pan, seen.width)
+
+    def goal_in(self, colours: np.ndarray) -> GoalSighting | None:
+        """Return what a rendered picture shows of the sky-blue goal.
+
+        Parameters
+        ----------
+        colours : ndarray of uint8, shape (160, 208)
+            A picture as `colours` gives it.
+
+        Returns
+        -------
+        GoalSighting or None
+            The same as `goal` from the same place with the head straight.
+        """
+        colours = self._checked(colours)
+        return self._goal(colours[self._horizon], lambda col: colours[:, col])
+
+    def blurred(self, world: World) -> bool:
+        """Return whether a picture taken now would be useless, for the head moves."""
+        return world.head.blurs and world.unsettled > 0.0
 
     def colours(self, world: World) -> np.ndarray:
         """Return the colour-segmented picture: an index into `pitch.PALETTE` a pixel.
@@ -325,12 +408,8 @@ class Camera:
         -------
         ndarray of uint8, shape (160, 208)
         """
-        x, y, heading = world.pose
-        bx, by = world.ball
         image = np.empty((HEIGHT, WIDTH), dtype=np.uint8)
-        _picture(
-            x, y, self.height, heading, self.tilt, bx, by, _PANELS, _POSTS, _LINES, image
-        )  # fmt: skip
+        _picture(*self._view(world), _PANELS, _POSTS, _LINES, image)
         return image
 
     def picture(self, world: World) -> np.ndarray:
@@ -358,6 +437,48 @@ class Camera:
         209
         """
         return pixels * distance**2 / (FOCAL_LENGTH * pitch.BALL_RADIUS)
+
+    def _view(self, world: World) -> tuple[float, float, float, float, float, float, float]:
+        x, y, heading = world.pose
+        return x, y, self.height, heading + world.pan, self.tilt, *world.ball
+
+    @staticmethod
+    def _checked(colours: np.ndarray) -> np.ndarray:
+        if colours.shape != (HEIGHT, WIDTH):
+            raise ValueError(f"colours must have shape ({HEIGHT}, {WIDTH}), got {colours.shape}")
+        return colours
+
+    @property
+    def _horizon(self) -> int:
+        """The row whose rays stay as high as the lens; the top row where that is out of view."""
+        return max(0, math.floor(HEIGHT / 2 - FOCAL_LENGTH * math.tan(self.tilt)))
+
+    def _ray(self, right: float, down: float) -> tuple[float, float]:
+        """Return the orientation of a ray (rad), and how far it rises on its way."""
+        ahead = FOCAL_LENGTH * math.cos(self.tilt) - down * math.sin(self.tilt)
+        up = -FOCAL_LENGTH * math.sin(self.tilt) - down * math.cos(self.tilt)
+        return math.atan2(-right, ahead), up / math.hypot(ahead, right)
+
+    def _goal(
+        self, horizon: np.ndarray, column: Callable[[int], np.ndarray]
+    ) -> GoalSighting | None:
+        columns = np.flatnonzero(horizon == pitch.BLUE)
+        if not len(columns):
+            return None
+        first, last = int(columns[0]), int(columns[-1])
+        down = self._horizon + 0.5 - HEIGHT / 2
+        left, _ = self._ray(first - WIDTH / 2, down)
+        right, _ = self._ray(last + 1 - WIDTH / 2, down)
+        cut_left, cut_right = first == 0, last == WIDTH - 1
+        if cut_left != cut_right:
+            col = last if cut_left else first
+            rows = np.flatnonzero(column(col) == pitch.BLUE)
+            _, top = self._ray(col + 0.5 - WIDTH / 2, rows[0] - HEIGHT / 2)
+            _, foot = self._ray(col + 0.5 - WIDTH / 2, rows[-1] + 1 - HEIGHT / 2)
+            distance = pitch.GOAL_HEIGHT / (top - foot)
+            width = 2 * math.asin(min(1.0, _GOAL_ACROSS / 2 / distance))
+            left, right = (right + width, right) if cut_left else (left, left - width)
+        return GoalSighting((left + right) / 2, left - right)
 
     def _sighting(self) -> Sighting | None:
         distance, orientation = _measure(self._blob, self.height, self.tilt, self.min_pixels)

@@ -26,6 +26,8 @@ BALL_DECELERATION = 250.0
 # The ERS-7: Sony's drawing; its mass with the battery in.
 ROBOT_LENGTH, ROBOT_WIDTH = 317.0, 180.0
 ROBOT_MASS = 1650.0
+# Shapes of one group do not touch each other: the body and its own paw.
+ROBOT_GROUP = 1
 
 NOTHING, GREEN, WHITE, YELLOW, BLUE, ORANGE, GREY = range(7)
 PALETTE = np.array(

@@ -10,6 +10,7 @@ from PIL import Image, ImageDraw
 
 from arkaq_edu.field import pitch
 from arkaq_edu.field.camera import FIELD_OF_VIEW
+from arkaq_edu.field.kick import PAW_RADIUS
 from arkaq_edu.field.world import World
 
 # Drawn larger and shrunk, which smooths every edge.
@@ -29,15 +30,18 @@ _SHELL, _DARK, _LEG = (246, 246, 248), (44, 46, 52), (190, 194, 200)
 class _Canvas:
     """A drawing in millimetres: x to the right, y upwards."""
 
-    def __init__(self, width: int) -> None:
-        self.scale = width * _OVERSAMPLING / pitch.CARPET_LENGTH
-        height = round(width * pitch.CARPET_WIDTH / pitch.CARPET_LENGTH)
+    def __init__(self, width: int, region: tuple[float, float, float, float]) -> None:
+        left, right, bottom, top = region
+        self.scale = width * _OVERSAMPLING / (right - left)
+        self.middle = (left + right) / 2, (bottom + top) / 2
+        height = round(width * (top - bottom) / (right - left))
         self.size = (width, height)
         self.image = Image.new("RGB", (width * _OVERSAMPLING, height * _OVERSAMPLING), _CARPET)
         self.draw = ImageDraw.Draw(self.image, "RGBA")
 
     def at(self, x: float, y: float) -> tuple[float, float]:
         middle_x, middle_y = self.image.width / 2, self.image.height / 2
+        x, y = x - self.middle[0], y - self.middle[1]
         return middle_x + x * self.scale, middle_y - y * self.scale
 
     def line(self, points: Sequence[tuple[float, float]], colour, width: float) -> None:
@@ -68,6 +72,8 @@ def bird_view(
     width: int = 900,
     trail: Sequence[tuple[float, float]] = (),
     sight: bool = True,
+    ball_trail: Sequence[tuple[float, float]] = (),
+    region: tuple[float, float, float, float] = EXTENT,
 ) -> np.ndarray:
     """Draw the field from above: carpet, lines, goals, ball and robot.
 
@@ -76,33 +82,41 @@ def bird_view(
     world : World
         The field as it is now.
     width : int
-        Width of the picture (pixels); its height is two thirds of it.
+        Width of the picture (pixels); its height follows from `region`.
     trail : sequence of (x, y)
         Where the robot has been (mm).
     sight : bool
         Whether to show the camera's field of view (figure 5.7).
+    ball_trail : sequence of (x, y)
+        Where the ball has been (mm).
+    region : tuple of float
+        What to show: the lowest and highest x, then y (mm).
 
     Returns
     -------
     ndarray of uint8, shape (height, width, 3)
-        Rows from +y down; `EXTENT` is its extent for ``imshow``.
+        Rows from +y down; `region` is its extent for ``imshow``.
 
     Examples
     --------
     >>> bird_view(World(rng=0), width=300).shape
     (200, 300, 3)
     """
-    canvas = _Canvas(width)
+    canvas = _Canvas(width, region)
     _draw_pitch(canvas)
     x, y, heading = world.pose
     if sight:
-        rim = np.linspace(-FIELD_OF_VIEW / 2, FIELD_OF_VIEW / 2, 25) + heading
+        rim = np.linspace(-FIELD_OF_VIEW / 2, FIELD_OF_VIEW / 2, 25) + (heading + world.pan)
         wedge = [(x + _SIGHT * math.cos(a), y + _SIGHT * math.sin(a)) for a in rim]
         canvas.polygon([(x, y), *wedge], (255, 255, 255, 38))
     if len(trail) > 1:
         canvas.line(trail, (250, 225, 90), 28)
+    if len(ball_trail) > 1:
+        canvas.line(ball_trail, (240, 105, 40, 150), 22)
     _draw_ball(canvas, *world.ball)
-    _draw_robot(canvas, x, y, heading)
+    if world.paw is not None:
+        canvas.disc(*world.paw, PAW_RADIUS, _LEG, _DARK, 8)
+    _draw_robot(canvas, x, y, heading, world.pan)
     return canvas.finish()
 
 
@@ -129,7 +143,7 @@ def _draw_ball(canvas: _Canvas, x: float, y: float) -> None:
     canvas.disc(x, y, pitch.BALL_RADIUS + 8, orange, (120, 45, 10), 10)
 
 
-def _draw_robot(canvas: _Canvas, x: float, y: float, heading: float) -> None:
+def _draw_robot(canvas: _Canvas, x: float, y: float, heading: float, pan: float) -> None:
     """Draw the body, four legs, the head with its ears, and the tail."""
     c, s = math.cos(heading), math.sin(heading)
 
@@ -149,7 +163,13 @@ def _draw_robot(canvas: _Canvas, x: float, y: float, heading: float) -> None:
     block(70, -125, 58, -58, _SHELL)
     canvas.disc(*place(70, 0), 58, _SHELL)
     block(-10, -100, 40, -40, _DARK)
-    canvas.disc(*place(122, 0), 50, _SHELL, _LEG, 6)
+    neck, turned, aside = 70.0, math.cos(pan), math.sin(pan)
+
+    def on_head(ahead: float, left: float) -> tuple[float, float]:
+        ahead -= neck
+        return place(neck + ahead * turned - left * aside, ahead * aside + left * turned)
+
+    canvas.disc(*on_head(122, 0), 50, _SHELL, _LEG, 6)
     for left in (52.0, -52.0):
-        canvas.line([place(118, left), place(78, left * 1.15)], _DARK, 22)
-    canvas.disc(*place(148, 0), 24, _DARK)
+        canvas.line([on_head(118, left), on_head(78, left * 1.15)], _DARK, 22)
+    canvas.disc(*on_head(148, 0), 24, _DARK)

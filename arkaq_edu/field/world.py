@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,8 @@ import pymunk
 
 from arkaq_edu import _checks
 from arkaq_edu.field import pitch
+from arkaq_edu.field.head import Head
+from arkaq_edu.field.kick import Kick, build_paw, roll, swing
 
 CYCLE = 0.64
 SUBSTEPS = 80
@@ -68,9 +71,13 @@ class World:
     Parameters
     ----------
     rng : int or numpy.random.Generator, optional
-        Where the variation of the footsteps comes from.
+        Where the variation of the footsteps and of the kicks comes from.
     legs : Legs, optional
         The imperfections of the gait.
+    head : Head, optional
+        How the head moves.
+    kick : Kick, optional
+        The imperfections of the kick.
 
     Attributes
     ----------
@@ -78,6 +85,12 @@ class World:
         x, y (mm) and heading (rad) of the robot; the heading is zero towards the sky-blue goal.
     ball : tuple of float
         x, y (mm) of the ball's centre.
+    pan : float
+        Where the head points (rad), from straight ahead to the left.
+    time : float
+        Seconds since the reset.
+    watch : callable or None
+        Called after each of the physics' steps while the robot kicks or stands.
 
     References
     ----------
@@ -96,10 +109,15 @@ class World:
     """
 
     def __init__(
-        self, rng: int | np.random.Generator | None = None, legs: Legs | None = None
+        self,
+        rng: int | np.random.Generator | None = None,
+        legs: Legs | None = None,
+        head: Head | None = None,
+        kick: Kick | None = None,
     ) -> None:
         self.rng = np.random.default_rng(rng)
-        self.legs = legs or Legs()
+        self.legs, self.head, self.kick = legs or Legs(), head or Head(), kick or Kick()
+        self.watch: Callable[[], None] | None = None
         self.reset((-2500.0, 0.0, 0.0), (0.0, 0.0))
 
     def reset(self, robot: tuple[float, float, float], ball: tuple[float, float]) -> None:
@@ -129,6 +147,9 @@ class World:
         self._build_walls()
         self._robot, self._control = self._build_robot(rx, ry, heading)
         self._ball = self._build_ball(bx, by)
+        self._paw: pymunk.Body | None = None
+        self.time = 0.0
+        self._pan_from = self._pan_to = self._pan_since = 0.0
 
     def cycle(self, left: float, right: float) -> None:
         """Take one footstep cycle (640 ms).
@@ -167,6 +188,79 @@ class World:
             control.velocity = ahead * c - sideways * s, ahead * s + sideways * c
             for _ in range(SUBSTEPS // _CHORDS):
                 step(dt)
+        self.time += CYCLE
+
+    def stand(self, seconds: float) -> None:
+        """Stand still for a time (s), counted in the physics' steps."""
+        dt = CYCLE / SUBSTEPS
+        self._halt()
+        for _ in range(math.ceil(_checks.number("seconds", seconds, 0) / dt)):
+            self._advance(dt)
+
+    def _halt(self) -> None:
+        for body in (self._control, self._robot):
+            body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
+
+    def look(self, pan: float) -> None:
+        """Have the head pan (rad, to the left), as far as it goes; it moves as time passes."""
+        reach = self.head.reach
+        target = max(-reach, min(reach, _checks.number("pan", pan)))
+        self._pan_from, self._pan_to, self._pan_since = self.pan, target, self.time
+
+    @property
+    def pan(self) -> float:
+        """Where the head points (rad), from straight ahead to the left."""
+        turned = self.head.speed * (self.time - self._pan_since)
+        to_go = self._pan_to - self._pan_from
+        return (
+            self._pan_to if turned >= abs(to_go) else self._pan_from + math.copysign(turned, to_go)
+        )
+
+    @property
+    def unsettled(self) -> float:
+        """How long (s) the head will go on moving and swaying; 0 once it is still."""
+        if self._pan_to == self._pan_from:
+            return 0.0
+        needed = abs(self._pan_to - self._pan_from) / self.head.speed + self.head.settling
+        left = self._pan_since + needed - self.time
+        return left if left > 1e-9 else 0.0
+
+    def put_ball(self, x: float, y: float) -> None:
+        """Put the ball elsewhere (mm), at rest."""
+        self.space.remove(self._ball, *self._ball.shapes, *self._ball.constraints)
+        self._ball = self._build_ball(x, y)
+
+    def swing_paw(self) -> list[tuple[float, float]]:
+        """Kick, and let the ball roll until it rests.
+
+        Returns
+        -------
+        list of (x, y)
+            The ball's way (mm). A ball that the paw does not reach stays where it is.
+        """
+        self._halt()
+        self._paw = build_paw(self.pose)
+        shapes = tuple(self._paw.shapes)
+        self.space.add(self._paw, *shapes)
+        swing(self._paw, self._ball, self._advance)
+        self.space.remove(self._paw, *shapes)
+        self._paw = None
+        pull = self.kick.swerve * self.rng.uniform(-1.0, 1.0)
+        return roll(self._ball, pull, self._advance)
+
+    @property
+    def paw(self) -> tuple[float, float] | None:
+        """x, y (mm) of the kicking paw while it swings."""
+        if self._paw is None:
+            return None
+        x, y = self._paw.position
+        return x, y
+
+    def _advance(self, dt: float) -> None:
+        self.space.step(dt)
+        self.time += dt
+        if self.watch is not None:
+            self.watch()
 
     def kick_off(self, velocity: tuple[float, float]) -> None:
         """Set the ball rolling at `velocity` (mm/s)."""
@@ -188,6 +282,15 @@ class World:
     def ball_from_robot(self) -> tuple[float, float]:
         """Return the true distance (mm) and orientation (rad) of the ball from the robot."""
         return pitch.bearing(*self.pose, *self.ball)
+
+    def goal_from_robot(self) -> tuple[float, float]:
+        """Return the orientation of the middle of the sky-blue goal and its width (rad)."""
+        x, side = pitch.LENGTH / 2, pitch.GOAL_WIDTH / 2 + 2 * pitch.POST_RADIUS
+        _, left = pitch.bearing(*self.pose, x, side)
+        _, right = pitch.bearing(*self.pose, x, -side)
+        width = (left - right) % (2 * math.pi)
+        middle = right + width / 2
+        return math.atan2(math.sin(middle), math.cos(middle)), width
 
     def _build_walls(self) -> None:
         x, y = pitch.CARPET_LENGTH / 2, pitch.CARPET_WIDTH / 2
@@ -219,6 +322,7 @@ class World:
         body.position, body.angle = (x, y), heading
         shape = pymunk.Poly.create_box(body, size)
         shape.elasticity, shape.friction = 0.1, 0.4
+        shape.filter = pymunk.ShapeFilter(group=pitch.ROBOT_GROUP)
         control = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
         control.position, control.angle = body.position, heading
         # Legs push with the friction of the paws and no more: a wall is stronger. max_bias = 0
