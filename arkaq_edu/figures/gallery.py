@@ -24,6 +24,7 @@ from . import (
     learning,
     mdp,
     policy,
+    pomdp,
     segmentation,
     trajectories,
 )
@@ -40,6 +41,7 @@ _ROOMS = (
     policy,
     trajectories,
     belief,
+    pomdp,
 )
 
 

@@ -9,6 +9,7 @@ from .explorer import Buttons, CanvasView, Drag, Explorer
 from .kalman import kalman_explorer
 from .learning import bandit_explorer, horizon_explorer
 from .planning import planning_explorer, q_learning_explorer
+from .pomdp import bowl_explorer, value_explorer
 from .resonance import letters_explorer, resonance_explorer
 from .vigilance import vigilance_explorer
 
@@ -19,11 +20,13 @@ __all__ = [
     "Explorer",
     "bandit_explorer",
     "belief_explorer",
+    "bowl_explorer",
     "horizon_explorer",
     "kalman_explorer",
     "letters_explorer",
     "planning_explorer",
     "q_learning_explorer",
     "resonance_explorer",
+    "value_explorer",
     "vigilance_explorer",
 ]

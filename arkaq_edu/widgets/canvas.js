@@ -24,14 +24,14 @@ const LAYERS = {
     ctx.beginPath();
     ctx.rect(x0, y0, x1 - x0, y1 - y0);
     ctx.clip();
+    ctx.strokeStyle = "white";
+    ctx.lineWidth = layer.border / 0.75;
+    // A colour's borders before the next colour: so what is drawn later can cover them.
     paths.forEach((path, color) => {
       ctx.fillStyle = layer.palette[color];
       ctx.fill(path);
+      if (layer.border) ctx.stroke(path);
     });
-    if (!layer.border) return;
-    ctx.strokeStyle = "white";
-    ctx.lineWidth = layer.border / 0.75;
-    for (const path of paths) ctx.stroke(path);
   },
 
   points(ctx, at, layer, numbers) {
@@ -48,7 +48,11 @@ const LAYERS = {
 
   line(ctx, at, layer, numbers) {
     ctx.beginPath();
-    for (let k = 0; k < numbers.length; k += 2) ctx.lineTo(...at(numbers[k], numbers[k + 1]));
+    for (let k = 0, begin = true; k < numbers.length; k += 2) {
+      const lifted = Number.isNaN(numbers[k]); // the pen: the line goes on elsewhere
+      if (!lifted) ctx[begin ? "moveTo" : "lineTo"](...at(numbers[k], numbers[k + 1]));
+      begin = lifted;
+    }
     ctx.strokeStyle = layer.color;
     ctx.lineWidth = layer.width;
     ctx.setLineDash(layer.dashed ? [5, 4] : []);
@@ -57,7 +61,7 @@ const LAYERS = {
 
   text(ctx, at, layer, numbers) {
     ctx.fillStyle = layer.color;
-    ctx.textAlign = "left";
+    ctx.textAlign = layer.align;
     ctx.textBaseline = "middle";
     ctx.fillText(layer.text, ...at(numbers[0], numbers[1]));
   },

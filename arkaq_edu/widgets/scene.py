@@ -63,7 +63,7 @@ class Cells:
         """Draw with matplotlib."""
         look = self.look()
         area = style.cells(self.polygons, [self.palette[color] for color in self.colors], ax)
-        area.set_linewidth(look["border"])
+        area.set(linewidth=look["border"], zorder=2)  # as lines: what comes later lies above
         left, right, bottom, top = self.within
         window = Rectangle((left, bottom), right - left, top - bottom, transform=ax.transData)
         area.set_clip_path(window)
@@ -99,7 +99,7 @@ class Points:
 
 @dataclass(frozen=True)
 class Line:
-    """A line through points."""
+    """A line through points; where x and y are NaN the pen is lifted."""
 
     kind: ClassVar[str] = "line"
     x: ArrayLike
@@ -124,17 +124,18 @@ class Line:
 
 @dataclass(frozen=True)
 class Text:
-    """Words that begin at a point, half a line above or below it."""
+    """Words at a point: they begin there, or stand about it where `align` is "center"."""
 
     kind: ClassVar[str] = "text"
     x: float
     y: float
     text: str
     color: str = style.INK
+    align: str = "left"
 
     def look(self) -> dict[str, Any]:
         """Return all but the numbers."""
-        return {"text": self.text, "color": self.color}
+        return {"text": self.text, "color": self.color, "align": self.align}
 
     def numbers(self) -> NDArray[np.float32]:
         """Return x and y."""
@@ -142,7 +143,7 @@ class Text:
 
     def paint(self, ax: Axes) -> None:
         """Draw with matplotlib."""
-        ax.text(self.x, self.y, self.text, color=self.color, va="center", fontsize=9)
+        ax.text(self.x, self.y, self.text, color=self.color, va="center", ha=self.align, fontsize=9)
 
 
 Layer = Cells | Points | Line | Text
