@@ -9,7 +9,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from arkaq_edu.figures import belief, style
-from arkaq_edu.pomdp import problem
+from arkaq_edu.pomdp import Calibration, problem
 
 NAN = float("nan")
 CELLS = 4
@@ -150,15 +150,15 @@ def test_a_run_shows_the_belief_in_the_truth_and_what_misled_it(ax):
 
 def test_calibration_is_a_mean_and_a_deviation_over_seeds(ax):
     shares = np.array([[0.5, NAN, 0.9], [0.7, 0.8, 1.0], [0.6, 0.6, 0.8]])
-    plot = belief.plot_calibration({"told": ([0.55, 0.75, 0.95], shares)}, ax)
+    told = Calibration(np.array([0.55, 0.75, 0.95]), shares)
+    plot = belief.plot_calibration({"told": told}, ax)
+    assert plot.lines["told"].get_xdata() == pytest.approx(told.claimed)
     assert plot.lines["told"].get_ydata() == pytest.approx([0.6, 0.7, 0.9])
     corners = plot.bands["told"].get_paths()[0].vertices
     top = {round(float(x), 9): y for x, y in sorted(map(tuple, corners))}
     std = [np.std([0.5, 0.7, 0.6]), 0.1, np.std([0.9, 1.0, 0.8])]
     assert [top[0.55], top[0.75], top[0.95]] == pytest.approx(np.add([0.6, 0.7, 0.9], std))
     assert plot.lines["told"].get_color() == style.OURS
-    with pytest.raises(ValueError, match="right must have shape"):
-        belief.plot_calibration({"told": ([0.5], shares)}, ax)
 
 
 def test_every_figure_makes_its_own_axes():

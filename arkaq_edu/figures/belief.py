@@ -25,7 +25,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _checks
-from ..pomdp import belief_update, problem, successors
+from ..pomdp import Calibration, belief_update, problem, successors
 from . import style
 from .diagram import Diagram, Place, blank, link, moment, wire, words
 
@@ -463,6 +463,8 @@ def plot_run(
     n = len(b)
     truth = _checks.array("truth", truth, (n,)).astype(int)
     wrong = _checks.array("misled", misled, (n,)) > 0
+    if ax is None:
+        _, ax = plt.subplots(figsize=(7.4, 3.4), layout="constrained")
     ax = style.axes(ax, xlabel="step", ylabel="belief in the hidden state", title=title)
     k = np.arange(1, n + 1)
     moved = k[1:][np.diff(truth) != 0]
@@ -471,21 +473,19 @@ def plot_run(
     (on_truth,) = ax.plot(k, share, color=style.OURS, lw=2, marker="o", markersize=3)
     marks = style.measurements(k[wrong], np.full(wrong.sum(), 1.07), ax, label="a look misleads")
     ax.set(xlim=(0, n + 1), ylim=(0, 1.13), yticks=np.linspace(0, 1, 6).round(1))
-    ax.legend(frameon=False, loc="upper left", bbox_to_anchor=(1, 1))
+    ax.legend(loc="best", framealpha=0.8, edgecolor="none")
     return RunPlot(ax, on_truth, changes, marks)
 
 
 def plot_calibration(
-    curves: Mapping[str, tuple[ArrayLike, ArrayLike]], ax: Axes | None = None, *, title: str = ""
+    curves: Mapping[str, Calibration], ax: Axes | None = None, *, title: str = ""
 ) -> CalibrationPlot:
-    """Draw how often the likeliest state was right, by how likely the belief had said it was.
+    """Draw how often what a belief claimed was so, by what it claimed.
 
     Parameters
     ----------
-    curves : mapping of str to (claimed, right)
-        Up to two curves by name. ``claimed``, shape (n,): probabilities that a belief gave to its
-        likeliest state. ``right``, shape (seeds, n): how often it was right, a row for each seed;
-        NaN where a seed made no such claim.
+    curves : mapping of str to Calibration
+        Up to two by name; their bands are one standard deviation over the seeds.
     ax : matplotlib.axes.Axes, optional
         Where to draw; fresh axes where it is None.
     title : str
@@ -495,32 +495,26 @@ def plot_calibration(
     -------
     CalibrationPlot
 
-    Raises
-    ------
-    ValueError
-        If the lengths differ.
-
     Examples
     --------
     >>> from matplotlib.figure import Figure
-    >>> plot = plot_calibration({"honest": ([0.5, 0.9], [[0.4, 0.9], [0.6, 0.9]])},
-    ...                         Figure().subplots())
+    >>> honest = Calibration(np.array([0.5, 0.9]), np.array([[0.4, 0.9], [0.6, 0.9]]))
+    >>> plot = plot_calibration({"honest": honest}, Figure().subplots())
     >>> plot.lines["honest"].get_ydata()
     array([0.5, 0.9])
     """
-    ax = style.axes(ax, xlabel="what the belief claims for its likeliest state",
-                    ylabel="how often that is the state", title=title)  # fmt: skip
+    ax = style.axes(ax, xlabel="what the belief claims", ylabel="how often it is so", title=title)
     ax.plot([0, 1], [0, 1], "--", color=style.QUIET, linewidth=1)
     lines, bands, least = {}, {}, 1.0
-    for (name, (x, y)), color in zip(curves.items(), (style.OURS, style.INK), strict=False):
-        claimed = _checks.array("claimed", x, (None,))
-        right = _checks.array("right", y, (None, len(claimed)), allow_nan=True)
-        mean, std = np.nanmean(right, axis=0), np.nanstd(right, axis=0)
+    for (name, (claimed, held)), color in zip(
+        curves.items(), (style.OURS, style.INK), strict=False
+    ):
+        mean, std = np.nanmean(held, axis=0), np.nanstd(held, axis=0)
         lines[name], bands[name] = style.band(
             claimed, mean, std, ax, color=color, marker="o", markersize=4, label=name
         )
         least = min(least, claimed.min(), (mean - std).min())
-    ends = (least - 0.03, 1.01)
+    ends = (max(least - 0.03, 0.0), 1.01)
     ax.set(xlim=ends, ylim=ends, aspect="equal")
     ax.legend(frameon=False, loc="upper left")
     return CalibrationPlot(ax, lines, bands)

@@ -12,8 +12,10 @@ Thesis 2.3.
 """
 
 from arkaq_edu.pomdp.belief import (
+    Calibration,
     Successors,
     belief_update,
+    calibration,
     expected_rewards,
     predict,
     successors,
@@ -28,6 +30,7 @@ from arkaq_edu.pomdp.value import ValueFunction
 
 __all__ = [
     "POMDP",
+    "Calibration",
     "Domination",
     "PolicyGraph",
     "PolicyTree",
@@ -37,6 +40,7 @@ __all__ = [
     "all_trees",
     "belief_update",
     "bellman_error",
+    "calibration",
     "dominated",
     "expected_rewards",
     "predict",

@@ -26,6 +26,21 @@ class Successors(NamedTuple):
     beliefs: NDArray[np.float64]
 
 
+class Calibration(NamedTuple):
+    """What became of the claims of beliefs, sorted by what was claimed.
+
+    Attributes
+    ----------
+    claimed : ndarray, shape (n,)
+        The mean claim of each bin.
+    held : ndarray, shape (seeds, n)
+        Which part of the claims in it came true, a row for each seed; NaN where it made none.
+    """
+
+    claimed: NDArray[np.float64]
+    held: NDArray[np.float64]
+
+
 def predict(pomdp: POMDP, b: ArrayLike, a: int) -> NDArray[np.float64]:
     """Return Pr(s' | b, a): the belief after an action, before anything is observed.
 
@@ -189,6 +204,51 @@ def expected_rewards(pomdp: POMDP, b: ArrayLike) -> NDArray[np.float64]:
     array([0.25 , 1.125])
     """
     return _belief(pomdp, b) @ pomdp.R
+
+
+def calibration(claims: ArrayLike, true: ArrayLike, edges: ArrayLike) -> Calibration:
+    """Return how often what was claimed with some probability came true.
+
+    Parameters
+    ----------
+    claims : array_like, shape (seeds, T)
+        Probabilities that were claimed.
+    true : array_like of bool, shape (seeds, T)
+        Whether each came true.
+    edges : array_like, shape (k,)
+        Where one bin of claims ends and the next begins, rising; a bin without claims is left out.
+
+    Returns
+    -------
+    Calibration
+        ``claimed``, shape (n,), and ``held``, shape (seeds, n).
+
+    Raises
+    ------
+    ValueError
+        If a claim is outside [0, 1], or the shapes differ.
+
+    References
+    ----------
+    A. Dawid, "The well-calibrated Bayesian", Journal of the American Statistical Association 77,
+    1982. Not in the thesis.
+
+    Examples
+    --------
+    >>> calibration([[0.6, 0.9, 0.9, 0.9]], [[True, True, True, False]], edges=[0.8])
+    Calibration(claimed=array([0.6, 0.9]), held=array([[1.        , 0.66666667]]))
+    """
+    p = array("claims", claims, (None, None))
+    if ((p < 0) | (p > 1)).any():
+        raise ValueError(f"claims must be probabilities, in [0, 1], got {p.min()} to {p.max()}")
+    came = array("true", true, p.shape)
+    bins = np.digitize(p, array("edges", edges, (None,)))
+    kept = np.unique(bins)
+    here = bins == kept[:, np.newaxis, np.newaxis]
+    made = here.sum(axis=2).T
+    held = np.full(made.shape, np.nan)
+    np.divide((here * came).sum(axis=2).T, made, out=held, where=made > 0)
+    return Calibration((here * p).sum(axis=(1, 2)) / made.sum(axis=0), held)
 
 
 def _belief(pomdp: POMDP, b: ArrayLike) -> NDArray[np.float64]:

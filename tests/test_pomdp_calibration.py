@@ -1,0 +1,46 @@
+"""Claims of beliefs, counted: by hand, and over worlds that are as the belief thinks, or not."""
+
+import numpy as np
+import pytest
+
+from arkaq_edu.pomdp import belief_update, calibration, problem
+
+
+def test_claims_are_sorted_and_counted():
+    claims = [[0.5, 0.55, 0.8, 0.9], [0.95, 0.95, 0.85, 0.99]]
+    true = [[True, False, True, False], [True, True, False, True]]
+    claimed, held = calibration(claims, true, edges=[0.6, 0.8, 0.9])
+    assert claimed == pytest.approx([0.525, (0.8 + 0.85) / 2, (0.9 + 0.95 + 0.95 + 0.99) / 4])
+    np.testing.assert_array_equal(held, [[0.5, 1, 0], [np.nan, 0, 1]])
+
+
+def test_where_nothing_was_claimed_there_is_no_bin():
+    assert calibration([[0.5]], [[True]], edges=[0.1, 0.2, 0.9, 0.95]).claimed.tolist() == [0.5]
+
+
+def test_a_belief_with_the_right_model_keeps_its_word():
+    pomdp, look, rng = problem("ball_side"), 0, np.random.default_rng(1)
+    claims, true = np.empty((20, 300)), np.empty((20, 300))
+    for seed in range(20):
+        state, b = rng.integers(0, 2), pomdp.start
+        for k in range(300):
+            state = rng.choice(2, p=pomdp.T[look, state])
+            b = belief_update(pomdp, b, look, rng.choice(3, p=pomdp.O[look, state]))
+            claims[seed, k], true[seed, k] = b[0], state == 0
+    claimed, held = calibration(claims, true, edges=[0.1, 0.3, 0.7, 0.9])
+    assert len(claimed) == 5
+    error = held.std(axis=0) / np.sqrt(20)
+    assert (np.abs(held.mean(axis=0) - claimed) < 4 * error + 0.01).all()
+
+
+@pytest.mark.parametrize(
+    ("claims", "true", "message"),
+    [
+        ([[0.5, 1.5]], [[1, 0]], "claims must be probabilities"),
+        ([[0.5]], [[1, 0]], "true must have shape"),
+        ([0.5], [1], "claims must have shape"),
+    ],
+)
+def test_what_are_no_claims_is_refused(claims, true, message):
+    with pytest.raises(ValueError, match=message):
+        calibration(claims, true, edges=[0.5])
