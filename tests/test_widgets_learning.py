@@ -10,7 +10,7 @@ from scipy import stats
 from arkaq_edu.mdp import UCB, play
 from arkaq_edu.widgets import bandit_explorer, horizon_explorer, learning
 from arkaq_edu.widgets.learning import MACHINES
-from arkaq_edu.widgets.scene import Line, Points, Text
+from arkaq_edu.widgets.scene import Cells, Line, Points, Text
 
 CHAINS = ((2, 2.0), (5, 10.0), (6, 11.0))
 NAMES = ("upper", "middle", "lower")
@@ -77,8 +77,9 @@ def test_the_curves_are_the_closed_forms_and_meet_where_the_choice_flips(models)
     colors = learning.CHAIN_COLORS
 
     def strip(panel):
-        pieces = [x for x in panel.layers if isinstance(x, Line) and x.width == 9.0]
-        return [(piece.color, *map(float, piece.x)) for piece in pieces]
+        cells = next(layer for layer in panel.layers if isinstance(layer, Cells))
+        pieces = zip(cells.polygons, cells.colors, strict=True)
+        return [(cells.palette[c], piece[:, 0].min(), piece[:, 0].max()) for piece, c in pieces]
 
     grey = strip(over_h)[0][0]
     assert strip(over_h) == [

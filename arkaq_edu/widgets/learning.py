@@ -46,7 +46,8 @@ STRATEGIES: dict[str, Strategy] = {
 }
 PLAYERS = 300  # so many play each strategy on the same machines
 
-_LENGTHS = (40, 100, 200, 500, 1000)  # pulls: where the axis of a game ends
+_LENGTHS = (40, 70, 100, 150, 200, 300, 500, 1000)  # pulls: where the axis of a game ends
+_TIE = "#c9c9c9"
 _WIDE: dict[str, Any] = {
     "layout": {"width": "min(100%, 36em)"}, "style": {"description_width": "9em"},
 }  # fmt: skip
@@ -153,9 +154,12 @@ def _model(
     left, right = float(x[0]), float(x[-1])
     pad = 0.03 * (right - left)
     best = np.isclose(curves, curves.max(axis=1, keepdims=True))
-    layers = _strip(x, best)
-    layers.append(Line([now, now], [-0.3, curves[at].max()], style.QUIET, 1.0, dashed=True))
-    layers.append(Text(left + 0.4 * pad, 11.3, head))
+    ends, heights = (left - pad, right + pad), (-1.0, 12.0)
+    layers: list[Layer] = [
+        _strip(x, best, (*ends, *heights)),
+        Line([now, now], [-0.4, curves[at].max()], style.QUIET, 1.0, dashed=True),
+        Text(left + 0.4 * pad, 11.3, head),
+    ]
     for i, (name, color) in enumerate(CHAIN_COLORS.items()):
         y = 10.4 - 0.85 * i
         layers += [
@@ -164,24 +168,22 @@ def _model(
             Points([left + pad], [y], 4.0, color),
             Text(left + 2.5 * pad, y, f"{name}: {earned[i]:.3g}"),
         ]
-    return Panel(
-        *labels, (left - pad, right + pad), (-1.0, 12.0), layers, width=1.25,
-        yticks=[0, 2, 4, 6, 8, 10, 12],
-    )  # fmt: skip
+    return Panel(*labels, ends, heights, layers, width=1.25, yticks=[0, 2, 4, 6, 8, 10, 12])
 
 
-def _strip(x: NDArray[Any], best: NDArray[np.bool_]) -> list[Layer]:
+def _strip(
+    x: NDArray[Any], best: NDArray[np.bool_], within: tuple[float, float, float, float]
+) -> Cells:
     """Return the strip at the foot: the colour of the chain that is chosen, grey for a tie."""
     edges = np.concatenate([x[:1], (x[1:] + x[:-1]) / 2, x[-1:]]).astype(float)
-    strip: list[Layer] = []
-    start = 0
+    pieces, colors, start = [], [], 0
     for chosen, run in groupby(map(tuple, best)):
         end = start + len(list(run))
-        colors = [c for c, is_best in zip(CHAIN_COLORS.values(), chosen, strict=True) if is_best]
-        color = colors[0] if len(colors) == 1 else "#c9c9c9"
-        strip.append(Line([edges[start], edges[end]], [-0.55, -0.55], color, 9.0))
+        left, right = edges[start], edges[end]
+        pieces.append(np.array([[left, -0.7], [right, -0.7], [right, -0.4], [left, -0.4]]))
+        colors.append(chosen.index(True) if sum(chosen) == 1 else len(chosen))
         start = end
-    return strip
+    return Cells(pieces, colors, within, [*CHAIN_COLORS.values(), _TIE], border=0)
 
 
 def _averages(earned: NDArray[np.float64]) -> Panel:
@@ -284,7 +286,7 @@ def draw_bandit(machines: int, pulls: Sequence[str], reveal: bool) -> Scene:
     """
     played = game(machines, pulls)
     best, n = played.bandit.best, len(pulls)
-    length = next((length for length in _LENGTHS if length >= n), n)
+    length = next((length for length in _LENGTHS if length >= n), 1000 * -(-n // 1000))
     earned = played.bandit.p[played.arms] if reveal else played.rewards
     yours = np.append(0.0, regret(earned, best)) if n else np.zeros(1)
     others = crowd(machines, length, luck=not reveal)
@@ -350,10 +352,10 @@ def _machines(played: Game, reveal: bool) -> Panel:
         tally = f"{paid.sum():.0f} of {paid.size}"
         layers.append(Text(i + 1 - 0.045 * len(tally), 1.1, tally))
         if reveal:
-            layers.append(Line([i + 0.75, i + 1.25], [p, p], style.OURS, 3.0))
-            layers.append(Text(i + 0.75, p + 0.045, f"{p:.2f}", style.OURS))
+            layers.append(Line([i + 0.78, i + 1.22], [p, p], style.OURS, 3.0))
+            layers.append(Text(i + 1.26, p, f"{p:.2f}", style.OURS))
     return Panel(
-        "machine", "paid on average (coins a pull)", (0.4, 4.6), (-0.05, 1.18), layers,
+        "machine", "paid on average (coins a pull)", (0.5, 4.8), (-0.05, 1.18), layers,
         xticks=[1, 2, 3, 4], yticks=[0, 0.2, 0.4, 0.6, 0.8, 1],
     )  # fmt: skip
 
