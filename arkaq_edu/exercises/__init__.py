@@ -11,12 +11,14 @@ from .belief import check_chances, check_correct, check_expected_reward, check_p
 from .kalman import check_combine, check_nis, check_turn
 from .learning import check_discounted_sum, check_epsilon_greedy, check_finite_sum, check_regret
 from .mdp import check_bellman, check_greedy, check_rate, check_td
+from .pomdp import check_best, check_lead, check_two_steps
 from .segmentation import check_nearest, check_present, check_scale
 
 __all__ = [
     "ExerciseError",
     "check_backup",
     "check_bellman",
+    "check_best",
     "check_boltzmann",
     "check_chances",
     "check_choose",
@@ -27,6 +29,7 @@ __all__ = [
     "check_expected_reward",
     "check_finite_sum",
     "check_greedy",
+    "check_lead",
     "check_match",
     "check_nearest",
     "check_nis",
@@ -39,4 +42,5 @@ __all__ = [
     "check_scale",
     "check_td",
     "check_turn",
+    "check_two_steps",
 ]

@@ -1,0 +1,152 @@
+"""The checks of the exercises on value functions: right answers pass, wrong ones are told how."""
+
+import numpy as np
+import pytest
+
+from arkaq_edu.exercises import ExerciseError, check_best, check_lead, check_two_steps
+from arkaq_edu.pomdp import POMDP, PolicyTree, ValueFunction, tree_value
+
+
+def two_steps(T, O_, R, gamma, a, after):
+    pomdp = POMDP(T, O_, R, gamma)
+    return tree_value(pomdp, PolicyTree(a, tuple(PolicyTree(int(then)) for then in after)))
+
+
+def best(b, alphas, actions):
+    V = ValueFunction(alphas, actions, np.empty((len(alphas), 0), int))
+    return V.value(b), V.action(b)
+
+
+def lead(b, alpha, others):
+    return min(b @ alpha - b @ other for other in others)
+
+
+def other_value(value):
+    return lambda *given: (value(*given), best(*given)[1])
+
+
+def other_action(action):
+    return lambda *given: (best(*given)[0], action(*given))
+
+
+def not_written(*_):
+    raise NotImplementedError
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize(
+    ("check", "answer"), [(check_two_steps, two_steps), (check_best, best), (check_lead, lead)]
+)
+def test_a_right_answer_is_praised(check, answer, seed):
+    assert check(answer, rng=seed).startswith("Right")
+
+
+def loops(T, O_, R, gamma, a, after):
+    """The sums of equation 2.19, one by one."""
+    states = range(len(R))
+    return [
+        R[s, a]
+        + gamma
+        * sum(
+            T[a, s, t] * sum(O_[a, t, z] * R[t, then] for z, then in enumerate(after))
+            for t in states
+        )
+        for s in states
+    ]
+
+
+def test_a_list_from_loops_will_do():
+    assert check_two_steps(loops, rng=0).startswith("Right")
+
+
+def later(T, O_, R, a, after):
+    return T[a] @ (O_[a] * R[:, after]).sum(axis=1)
+
+
+WRONG = [
+    (check_two_steps, not_written, "still empty"),
+    (check_two_steps, lambda T, O_, R, g, a, f: R[:, a], "second step"),
+    (check_two_steps, lambda T, O_, R, g, a, f: g * later(T, O_, R, a, f), "first action's reward"),
+    (
+        check_two_steps,
+        lambda T, O_, R, g, a, f: R[:, a] + later(T, O_, R, a, f),
+        "but the discount",
+    ),
+    (check_two_steps, lambda T, O_, R, g, a, f: g * two_steps_free(T, O_, R, 1, a, f), "only"),
+    (
+        check_two_steps,
+        lambda T, O_, R, g, a, f: R[:, a] + g * (O_[a] * R[:, f]).sum(1),
+        "not moved",
+    ),
+    (
+        check_two_steps,
+        lambda T, O_, R, g, a, f: two_steps_free(T.transpose(0, 2, 1), O_, R, g, a, f),
+        "backwards",
+    ),
+    (
+        check_two_steps,
+        lambda T, O_, R, g, a, f: R[:, a] + g * (O_[a] * (T[a] @ R[:, f])).sum(1),
+        "before the state has moved",
+    ),
+    (
+        check_two_steps,
+        lambda T, O_, R, g, a, f: R[:, a] + g * ((T[a] @ O_[a]) * R[:, f]).sum(1),
+        "for the state at the start",
+    ),
+    (
+        check_two_steps,
+        lambda T, O_, R, g, a, f: R[:, a] + g * T[a] @ R[:, f].mean(1),
+        "all observations alike",
+    ),
+    (
+        check_two_steps,
+        lambda T, O_, R, g, a, f: R[:, a] + g * T[a] @ R[:, f].sum(1),
+        "all observations alike",
+    ),
+    (
+        check_two_steps,
+        lambda T, O_, R, g, a, f: R[:, a] + g * T[a] @ R.max(axis=1),
+        "the plan says",
+    ),
+    (check_two_steps, lambda *given: two_steps(*given).sum(), "shape"),
+    (check_two_steps, lambda *given: two_steps(*given) + 1, "too large"),
+    (check_best, not_written, "still empty"),
+    (check_best, lambda b, alphas, actions: (alphas @ b).max(), "shape"),
+    (check_best, other_value(lambda b, alphas, actions: (alphas @ b).min()), "worst plan"),
+    (check_best, other_value(lambda b, alphas, actions: alphas.max(axis=0) @ b), "could be seen"),
+    (check_best, other_value(lambda b, alphas, _: alphas[:, b.argmax()].max()), "likeliest"),
+    (check_best, other_value(lambda b, alphas, actions: alphas.max()), "could happen"),
+    (check_best, other_value(lambda b, alphas, actions: (alphas @ b).mean()), "may choose"),
+    (check_best, other_value(lambda b, alphas, _: alphas.mean(axis=1).max()), "states alike"),
+    (check_best, lambda *given: best(*given)[::-1], "comes first"),
+    (check_best, other_action(lambda b, alphas, actions: (alphas @ b).argmax()), "number of the"),
+    (
+        check_best,
+        other_action(lambda b, alphas, actions: actions[alphas[:, b.argmax()].argmax()]),
+        "for the likeliest state",
+    ),
+    (check_best, other_action(lambda b, alphas, actions: actions.max()), "greatest number"),
+    (check_best, other_action(lambda *given: best(*given)[1] + 1), "too large"),
+    (check_lead, not_written, "still empty"),
+    (check_lead, lambda *given: -lead(*given), "sign"),
+    (check_lead, lambda b, alpha, others: b @ alpha - (others @ b).min(), "worst of the others"),
+    (check_lead, lambda b, alpha, others: b @ alpha - (others @ b).mean(), "mean of the others"),
+    (check_lead, lambda b, alpha, others: b @ (alpha - others.max(axis=0)), "own rival"),
+    (check_lead, lambda b, alpha, others: (alpha - others).min(), "never used"),
+    (check_lead, lambda b, alpha, others: b @ alpha, "what the plan earns"),
+    (check_lead, lambda b, alpha, others: (others @ b).max(), "how far"),
+    (check_lead, lambda *given: lead(*given) > 0, "by how much"),
+    (check_lead, lambda b, alpha, others: others @ b - b @ alpha, "shape"),
+    (check_lead, lambda b, alpha, others: alpha.sort(), "returned nothing"),
+]
+
+
+def two_steps_free(T, O_, R, gamma, a, after):
+    return R[:, a] + gamma * T[a] @ (O_[a] * R[:, after]).sum(axis=1)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(("check", "answer", "hint"), WRONG)
+def test_a_wrong_answer_is_told_what_is_wrong(check, answer, hint, seed):
+    with pytest.raises(ExerciseError, match=hint):
+        check(answer, rng=seed)
