@@ -155,9 +155,10 @@ def figure_2_2(ax: Axes | None = None, *, horizon: int = 5, gamma: float = 0.9) 
     ['6', '16.2', '2']
     """
     earned = earnings(horizon, gamma)
+    best = [_with_article(best_chains(model)) for model in earned]
     title = (
-        f"best is {_best(earned[0])} with {horizon} step{'s' * (horizon > 1)} left, "
-        f"{_best(earned[1])} discounted by {gamma:g}, {_best(earned[2])} on average"
+        f"best is {best[0]} with {horizon} step{'s' * (horizon > 1)} left, "
+        f"{best[1]} discounted by {gamma:g}, {best[2]} on average"
     )
     ax = blank(ax, title, (-0.5, 11.9), (-0.6, 3.5), inch=0.7)
     columns = (8.6, 10.0, 11.4)
@@ -172,7 +173,7 @@ def figure_2_2(ax: Axes | None = None, *, horizon: int = 5, gamma: float = 0.9) 
             words(ax, (x, y), f"{model[i]:.3g}") for x, model in zip(columns, earned, strict=True)
         ]
         for text, model in zip(told[name], earned, strict=True):
-            text.set(fontsize=11, weight="bold" if _is_best(model)[i] else "normal")
+            text.set(fontsize=11, weight="bold" if name in best_chains(model) else "normal")
     ax.add_patch(Circle((0.0, 2.4), 0.2, facecolor=style.INK, edgecolor=style.INK, zorder=3))
     return ChainsPlot(ax, chains, told)
 
@@ -208,6 +209,28 @@ def earnings(horizon: int, gamma: float) -> NDArray[np.float64]:
     return np.array(
         [finite_horizon(world, horizon)[-1, 0], discounted(world)[0], average_reward(world)[0]]
     )
+
+
+def best_chains(earned: ArrayLike) -> list[str]:
+    """Return the names of the chains that earn as much as any.
+
+    Parameters
+    ----------
+    earned : array_like, shape (3,)
+        What each chain earns, by one model.
+
+    Returns
+    -------
+    list of str
+        Names of `CHAINS`.
+
+    Examples
+    --------
+    >>> best_chains([100.0, 110.0, 110.0])
+    ['middle', 'lower']
+    """
+    best = np.isclose(earned, np.max(earned))
+    return [name for name, is_best in zip(CHAINS, best, strict=True) if is_best]
 
 
 def plot_regret(
@@ -286,12 +309,5 @@ def _between(start: tuple[float, float], end: tuple[float, float]) -> NDArray[np
     return np.array([one + step, other - step])
 
 
-def _is_best(earned: NDArray[np.float64]) -> NDArray[np.bool_]:
-    return np.isclose(earned, earned.max())
-
-
-def _best(earned: NDArray[np.float64]) -> str:
-    best = _is_best(earned)
-    if best.all():
-        return "any"
-    return " or ".join(f"the {name}" for name, is_best in zip(CHAINS, best, strict=True) if is_best)
+def _with_article(names: list[str]) -> str:
+    return "any" if len(names) == len(CHAINS) else " or ".join(f"the {name}" for name in names)

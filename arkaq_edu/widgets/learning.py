@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from .. import _checks
 from ..figures import style
-from ..figures.learning import CHAIN_COLORS, CHAINS, SERIES, earnings
+from ..figures.learning import CHAIN_COLORS, CHAINS, SERIES, best_chains, earnings
 from ..mdp import (
     UCB,
     Bandit,
@@ -106,7 +106,11 @@ def draw_models(h: int, gamma: float) -> Scene:
     gamma = round(gamma, 2)  # a slider's steps add up to 0.9000000000000001
     earned = earnings(_checks.integer("h", h, 1, LONGEST), gamma)
     finite, geometric = _curves()
-    told = [f"{_chosen(row)} ({', '.join(f'{x:.3g}' for x in row)})" for row in earned]
+    told = []
+    for row in earned:
+        best = best_chains(row)
+        chosen = "any" if len(best) == len(CHAINS) else " or ".join(best)
+        told.append(f"{chosen} ({', '.join(f'{x:.3g}' for x in row)})")
     fact = f"h = {h}: {told[0]}; gamma = {gamma:g}: {told[1]}; average: {told[2]}"
     summed = "one reward" if h == 1 else f"sum of {h} rewards"
     panels = [
@@ -131,14 +135,6 @@ def _curves() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     finite = finite_horizon(delayed_rewards(delays, rewards), LONGEST)[:, 0] / steps[:, None]
     geometric = [(1 - g) * discounted(delayed_rewards(delays, rewards, g))[0] for g in GAMMAS]
     return finite, np.array(geometric)
-
-
-def _chosen(earned: NDArray[np.float64]) -> str:
-    """Return which chain earns most, or which together."""
-    best = np.isclose(earned, earned.max())
-    if best.all():
-        return "any"
-    return " or ".join(name for name, is_best in zip(CHAINS, best, strict=True) if is_best)
 
 
 def _model(
