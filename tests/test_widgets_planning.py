@@ -129,6 +129,16 @@ def test_the_lines_are_error_and_bound_and_the_dots_stand_at_this_sweep(explorer
     assert (dot.x, dot.y[0], hollow.y[0]) == ([8], run.error[8], run.bound[8])
 
 
+def test_the_chapter_asks_of_the_bridge_and_this_is_the_answer():
+    """At its left end: across by default; away where feet slip, and where the sight is short."""
+    ways = {}
+    for gamma, slip in ((0.95, 0.1), (0.95, 0.5), (0.5, 0.1)):
+        run = planning.sweeps(gamma, slip)
+        ways[gamma, slip] = run.best[-1][run.grid.places.tolist().index([2, 3])].tolist()
+    across, away = [True, False, False, False], [False, False, True, False]
+    assert list(ways.values()) == [across, away, away]
+
+
 def test_a_slider_that_adds_up_steps_is_no_other_world():
     assert planning.draw_sweep(5, 0.95, 0.1 + 0.2).fact == planning.draw_sweep(5, 0.95, 0.3).fact
 
