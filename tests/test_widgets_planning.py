@@ -125,7 +125,7 @@ def test_the_lines_are_error_and_bound_and_the_dots_stand_at_this_sweep(explorer
     hollow, dot = (layer for layer in panel.layers if isinstance(layer, Points))
     assert bound.dashed and not error.dashed and hollow.hollow and panel.log == "y"
     assert list(error.y) == pytest.approx(run.error[run.error >= 0.01])
-    assert np.asarray(bound.y) == pytest.approx(np.clip(run.bound, 0.01, 1e4))
+    assert list(bound.y) == pytest.approx(run.bound[run.bound >= 0.01])
     assert (dot.x, dot.y[0], hollow.y[0]) == ([8], run.error[8], run.bound[8])
 
 

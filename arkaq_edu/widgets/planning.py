@@ -167,9 +167,9 @@ def _floor(grid: Grid, V: NDArray[np.float64], best: NDArray[np.bool_]) -> Panel
 def _errors(run: Sweeps, n: int) -> Panel:
     k = np.arange(SWEEPS + 1)
     bound, error = (np.clip(values, *_ERRORS) for values in (run.bound, run.error))
-    seen = run.error >= _ERRORS[0]
+    above, seen = run.bound >= _ERRORS[0], run.error >= _ERRORS[0]
     layers: list[Layer] = [
-        Line(k, bound, style.INK, 1.3, dashed=True),
+        Line(k[above], bound[above], style.INK, 1.3, dashed=True),
         Line(k[seen], error[seen], style.OURS, 2.0),
         Points([n], bound[[n]], 4.0, style.INK, hollow=True),
         Points([n], error[[n]], 4.5, style.OURS),
