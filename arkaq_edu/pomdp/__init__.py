@@ -8,7 +8,7 @@ Thesis 2.3.
 - `trees`: policy trees and what they earn;
 - `value`: a value function, the upper surface of vectors; `graph`: plans without an end;
 - `pruning`: which vectors are needed, and who dominates the others; `_simplex`: its loops;
-- `solve`: exact value iteration.
+- `solve`: exact value iteration; `points`: bounds where that is out of reach.
 """
 
 from arkaq_edu.pomdp.belief import (
@@ -23,6 +23,7 @@ from arkaq_edu.pomdp.belief import (
 from arkaq_edu.pomdp.files import PomdpFormatError, problem, read_pomdp, write_pomdp
 from arkaq_edu.pomdp.graph import PolicyGraph
 from arkaq_edu.pomdp.model import POMDP
+from arkaq_edu.pomdp.points import PointBased, UpperBound, solve_point_based
 from arkaq_edu.pomdp.pruning import Domination, dominated, prune
 from arkaq_edu.pomdp.solve import bellman_error, solve_pomdp
 from arkaq_edu.pomdp.trees import PolicyTree, all_trees, tree_value
@@ -32,10 +33,12 @@ __all__ = [
     "POMDP",
     "Calibration",
     "Domination",
+    "PointBased",
     "PolicyGraph",
     "PolicyTree",
     "PomdpFormatError",
     "Successors",
+    "UpperBound",
     "ValueFunction",
     "all_trees",
     "belief_update",
@@ -47,6 +50,7 @@ __all__ = [
     "problem",
     "prune",
     "read_pomdp",
+    "solve_point_based",
     "solve_pomdp",
     "successors",
     "tree_value",

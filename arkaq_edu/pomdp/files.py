@@ -84,16 +84,9 @@ def read_pomdp(path: Path | str) -> POMDP:
            [  -1.,   10., -100.]])
     """
     if (size := Path(path).stat().st_size) > MOST_BYTES:
-        problem = f"expected at most {MOST_BYTES} bytes, got {size}"
-        raise PomdpFormatError(problem, str(path), 1, 1)
+        raise PomdpFormatError(f"expected at most {MOST_BYTES} bytes, got {size}", str(path), 1, 1)
     # What is no UTF-8 can stand in comments alone, and nobody reads those here.
-    text = (
-        Path(path)
-        .read_bytes()
-        .decode("utf-8-sig", errors="replace")
-        .replace("\r\n", "\n")
-        .replace("\r", "\n")
-    )
+    text = Path(path).read_text(encoding="utf-8-sig", errors="replace")
     return Reader(str(path), text).model()
 
 

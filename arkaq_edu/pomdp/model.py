@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from arkaq_edu._checks import array, distribution
@@ -104,6 +106,49 @@ class POMDP:
             )
         ]
         return f"POMDP({', '.join(counts)}, gamma={self.gamma:g})"
+
+    def step(
+        self, s: ArrayLike, a: ArrayLike, rng: np.random.Generator | int
+    ) -> tuple[Any, Any, Any, Any]:
+        """Take action `a` in state `s`, for one walker or for many at once.
+
+        Parameters
+        ----------
+        s, a : int or array_like of int, shape (N,)
+            The states, which no agent sees, and the actions.
+        rng : numpy.random.Generator or int
+            Where the draws come from.
+
+        Returns
+        -------
+        s_next : int or ndarray, shape (N,)
+            The states that follow.
+        z : int or ndarray, shape (N,)
+            What is observed there.
+        r : float or ndarray, shape (N,)
+            The rewards R(s, a).
+        terminated : bool or ndarray, shape (N,)
+            Whether `s_next` is an end of the MDP: never left, and nothing to earn.
+
+        Raises
+        ------
+        ValueError
+            If a state or an action does not exist.
+
+        Examples
+        --------
+        >>> pomdp = POMDP(T=[[[0, 1], [1, 0]]], O=[[[1, 0], [0, 1]]], R=[[5], [0]], gamma=0.5)
+        >>> s_next, z, r, terminated = pomdp.step([0, 1], 0, rng=0)
+        >>> s_next, z, r, terminated
+        (array([1, 0]), array([1, 0]), array([5., 0.]), array([False, False]))
+        """
+        rng = np.random.default_rng(rng)
+        s_next, r, terminated = self.mdp.step(s, a, rng)
+        sums = self.O[a, s_next].cumsum(axis=-1)
+        # Scaled by the last sum, so that no draw below 1 falls past what can be observed.
+        u = rng.random(np.shape(s_next)) * sums[..., -1]
+        z = (sums <= u[..., np.newaxis]).sum(axis=-1)
+        return s_next, z, r, terminated
 
 
 def _names(what: str, given: Sequence[str] | None, n: int) -> tuple[str, ...]:
