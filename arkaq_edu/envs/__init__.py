@@ -8,5 +8,9 @@ import lazy_loader as _lazy
 
 __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
-    submod_attrs={"ball_approach": ["BallApproachEnv"], "score_goal": ["ScoreGoalEnv"]},
+    submod_attrs={
+        "ball_approach": ["BallApproachEnv"],
+        "pomdp": ["POMDPEnv"],
+        "score_goal": ["ScoreGoalEnv"],
+    },
 )

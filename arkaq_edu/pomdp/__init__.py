@@ -3,14 +3,16 @@
 Thesis 2.3.
 
 - `model`: a POMDP;
-- `belief`: what is known after what was done and observed;
+- `belief`: what is known after what was done and observed; `grid`: all beliefs laid out;
 - `files`: models in Cassandra's file format, and the course's own;
 - `trees`: policy trees and what they earn;
 - `value`: a value function, the upper surface of vectors; `graph`: plans without an end;
 - `pruning`: which vectors are needed, and who dominates the others; `_simplex`: its loops;
-- `solve`: exact value iteration; `points`: bounds where that is out of reach.
+- `solve`: exact value iteration; `points`: bounds where that is out of reach;
+- `agent`: keep the belief and act on it.
 """
 
+from arkaq_edu.pomdp.agent import BeliefAgent
 from arkaq_edu.pomdp.belief import (
     Calibration,
     Successors,
@@ -22,6 +24,7 @@ from arkaq_edu.pomdp.belief import (
 )
 from arkaq_edu.pomdp.files import PomdpFormatError, problem, read_pomdp, write_pomdp
 from arkaq_edu.pomdp.graph import PolicyGraph
+from arkaq_edu.pomdp.grid import from_triangle, simplex_grid, to_triangle
 from arkaq_edu.pomdp.model import POMDP
 from arkaq_edu.pomdp.points import PointBased, UpperBound, solve_point_based
 from arkaq_edu.pomdp.pruning import Domination, dominated, prune
@@ -31,6 +34,7 @@ from arkaq_edu.pomdp.value import ValueFunction
 
 __all__ = [
     "POMDP",
+    "BeliefAgent",
     "Calibration",
     "Domination",
     "PointBased",
@@ -46,13 +50,16 @@ __all__ = [
     "calibration",
     "dominated",
     "expected_rewards",
+    "from_triangle",
     "predict",
     "problem",
     "prune",
     "read_pomdp",
+    "simplex_grid",
     "solve_point_based",
     "solve_pomdp",
     "successors",
+    "to_triangle",
     "tree_value",
     "write_pomdp",
 ]

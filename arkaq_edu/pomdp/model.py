@@ -144,7 +144,7 @@ class POMDP:
         """
         rng = np.random.default_rng(rng)
         s_next, r, terminated = self.mdp.step(s, a, rng)
-        sums = self.O[a, s_next].cumsum(axis=-1)
+        sums = self.O[np.asarray(a), s_next].cumsum(axis=-1)
         # Scaled by the last sum, so that no draw below 1 falls past what can be observed.
         u = rng.random(np.shape(s_next)) * sums[..., -1]
         z = (sums <= u[..., np.newaxis]).sum(axis=-1)

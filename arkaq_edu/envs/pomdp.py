@@ -1,0 +1,103 @@
+"""Any POMDP as a Gymnasium environment: its state is drawn, and only observations are shown."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+
+from arkaq_edu.pomdp import POMDP, problem, read_pomdp
+
+
+class POMDPEnv(gymnasium.Env[np.int64, np.int64]):
+    """Live in a POMDP.
+
+    ## Action space
+
+    ``Discrete(A)``: the actions of the POMDP.
+
+    ## Observation space
+
+    ``Discrete(Z + 1)``: the observations of the POMDP, and Z, "nothing yet", which `reset` returns:
+    an observation answers an action, and at the start there was none.
+
+    ## Rewards
+
+    R(s, a), of the state in which the action is taken.
+
+    ## Start
+
+    The state is drawn from the POMDP's `start`; with ``options={"state": s}`` it is `s`.
+
+    ## End
+
+    Terminated: the state is one that is never left and earns nothing (the MDP's `ends`). Most
+    POMDPs have none and go on; ``max_episode_steps`` of `gymnasium.make` sets a time limit.
+
+    ## Info
+
+    From ``reset`` and ``step``: the true `state`, which the agent should not look at.
+
+    Parameters
+    ----------
+    pomdp : POMDP, str or path
+        A model; the name of one of the course's own (`arkaq_edu.pomdp.problem`); or a path that
+        ends in ``.pomdp``, whichever its case, of a file in Cassandra's format.
+
+    Attributes
+    ----------
+    pomdp : POMDP
+        The model, with the names of its states, actions and observations.
+
+    References
+    ----------
+    Thesis 2.3 (figure 2.5).
+
+    Examples
+    --------
+    >>> env = gymnasium.make("arkaq_edu:POMDP-v0", pomdp="tiger", max_episode_steps=100)
+    >>> env.reset(seed=2)
+    (np.int64(2), {'state': 0})
+    >>> observation, reward, terminated, truncated, info = env.step(0)
+    >>> env.unwrapped.pomdp.observations[observation], reward, info
+    ('hear-left', -1.0, {'state': 0})
+    """
+
+    metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012
+
+    def __init__(self, pomdp: POMDP | Path | str) -> None:
+        if isinstance(pomdp, Path) or (isinstance(pomdp, str) and pomdp.lower().endswith(".pomdp")):
+            pomdp = read_pomdp(pomdp)
+        elif isinstance(pomdp, str):
+            pomdp = problem(pomdp)
+        elif not isinstance(pomdp, POMDP):
+            raise ValueError(f"pomdp must be a POMDP, a name or a path, got {pomdp!r}")
+        self.pomdp = pomdp
+        self.action_space = spaces.Discrete(pomdp.n_actions)
+        self.observation_space = spaces.Discrete(pomdp.n_observations + 1)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[np.int64, dict[str, Any]]:
+        """Start an episode; see the class's Start."""
+        super().reset(seed=seed)
+        states = np.arange(self.pomdp.n_states)
+        given = dict(options or {})
+        if not given:
+            self.state = int(self.np_random.choice(states, p=self.pomdp.start))
+        elif set(given) == {"state"} and given["state"] in states:
+            self.state = int(given["state"])
+        else:
+            raise ValueError(
+                f"options must hold a state in [0, {len(states) - 1}], got {options!r}"
+            )
+        return np.int64(self.pomdp.n_observations), {"state": self.state}
+
+    def step(self, action: np.int64) -> tuple[np.int64, float, bool, bool, dict[str, Any]]:
+        """Take an action; see the class."""
+        s, z, r, terminated = self.pomdp.step(self.state, action, self.np_random)
+        self.state = int(s)
+        return np.int64(z), float(r), bool(terminated), False, {"state": self.state}
