@@ -1,0 +1,268 @@
+"""A POMDP, and what is known in it: beliefs, their updates and where they lie."""
+
+import math
+
+import hypothesis.strategies as st
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+
+from arkaq_edu.pomdp import (
+    POMDP,
+    belief_update,
+    expected_rewards,
+    from_triangle,
+    predict,
+    problem,
+    simplex_grid,
+    successors,
+    to_triangle,
+)
+
+GOOD = {
+    "T": [np.eye(2), [[0.5, 0.5], [0, 1]]],
+    "O": [[[0.9, 0.1, 0], [0.1, 0.9, 0]], [[0, 0, 1], [0, 0, 1]]],
+    "R": [[1, 0], [0, 2]],
+    "gamma": 0.9,
+}
+
+
+# The model
+
+
+def test_a_model_keeps_what_it_was_given():
+    pomdp = POMDP(**GOOD, start=[0.25, 0.75], states=["near", "far"])
+    for name in ("T", "O", "R"):
+        np.testing.assert_array_equal(getattr(pomdp, name), GOOD[name])
+    assert (pomdp.n_states, pomdp.n_actions, pomdp.n_observations) == (2, 2, 3)
+    assert (pomdp.states, pomdp.actions) == (("near", "far"), ("0", "1"))
+    assert pomdp.mdp.T is pomdp.T and pomdp.mdp.gamma == 0.9
+    np.testing.assert_array_equal(POMDP(**GOOD).start, [0.5, 0.5])
+
+
+@pytest.mark.parametrize("name", ["T", "O", "R", "start"])
+def test_a_model_cannot_be_written_to_nor_through(name):
+    given_arrays = {key: np.array(GOOD[key], dtype=float) for key in ("T", "O", "R")}
+    start = np.array([0.5, 0.5])
+    pomdp = POMDP(**given_arrays, gamma=0.9, start=start)
+    before = getattr(pomdp, name).copy()
+    (start if name == "start" else given_arrays[name])[...] = 7
+    np.testing.assert_array_equal(getattr(pomdp, name), before)
+    with pytest.raises(ValueError, match="read-only"):
+        getattr(pomdp, name)[...] = 0
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"T": np.eye(2)}, "T must have shape"),
+        ({"T": np.ones((2, 2, 3)) / 3}, "T must have shape"),
+        ({"T": [np.eye(2), [[0.5, 0.6], [0, 1]]]}, r"T must sum to 1 .* got 1.1 at \(1, 0\)"),
+        ({"O": np.ones((1, 2, 1))}, r"O must have shape \(2, 2, any\), got \(1, 2, 1\)"),
+        ({"O": np.ones((2, 3, 1))}, r"O must have shape \(2, 2, any\), got \(2, 3, 1\)"),
+        ({"O": np.ones((2, 2, 0))}, "O must have shape .* none of them 0"),
+        ({"O": np.full((2, 2, 2), 0.4)}, r"O must sum to 1 .* got 0.8 at \(0, 0\)"),
+        ({"O": [[[2, -1], [0, 1]]] * 2}, r"O must hold probabilities >= 0, got -1.0 at"),
+        ({"O": [[[np.nan, 1], [0, 1]]] * 2}, "O must hold finite numbers, got nan at"),
+        ({"O": "seen"}, "O must"),
+        ({"R": [[1, 0]]}, "R must have shape"),
+        ({"R": [[1, np.inf], [0, 2]]}, "R must hold finite numbers"),
+        ({"gamma": 1}, r"gamma must be a number in \[0, 1\), got 1"),
+        ({"gamma": np.nan}, "gamma must be"),
+        ({"start": [0.5, 0.4]}, "start must sum to 1"),
+        ({"start": [1]}, "start must have shape"),
+        ({"states": ["a"]}, r"states must be 2 names, got \['a'\]"),
+        ({"states": ["a", 1]}, "states must be 2 names"),
+        ({"actions": ["a", ""]}, "actions must be 2 names"),
+        ({"observations": ["x", "y", "x"]}, "observations must be different names, got 'x' twice"),
+    ],
+)
+def test_a_model_that_is_none_is_refused(change, said):
+    with pytest.raises(ValueError, match=said):
+        POMDP(**{**GOOD, **change})
+
+
+# Beliefs
+
+
+@st.composite
+def looks(draw):
+    """A random POMDP with many zeros, a belief, an action and an observation."""
+    S, A, Z = draw(st.tuples(st.integers(1, 5), st.integers(1, 3), st.integers(1, 4)))
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+
+    def rows(*shape):
+        x = rng.random(shape) * (rng.random(shape) < 0.6)
+        x[..., 0] += x.sum(axis=-1) == 0
+        return x / x.sum(axis=-1, keepdims=True)
+
+    pomdp = POMDP(rows(A, S, S), rows(A, S, Z), rng.normal(size=(S, A)), 0.9, rows(S))
+    return pomdp, rows(S), int(rng.integers(A)), int(rng.integers(Z))
+
+
+def by_enumeration(pomdp, b, a, z):
+    """Pr(s' | z, b, a) from the joint probability of everything that can happen."""
+    chance_of = np.zeros(pomdp.n_states)
+    for s in range(pomdp.n_states):
+        for s_next in range(pomdp.n_states):
+            chance_of[s_next] += b[s] * pomdp.T[a, s, s_next] * pomdp.O[a, s_next, z]
+    return chance_of
+
+
+@settings(max_examples=100, deadline=None)
+@given(look=looks())
+def test_equation_2_15_by_enumeration(look):
+    pomdp, b, a, z = look
+    joint = by_enumeration(pomdp, b, a, z)
+    if joint.sum() == 0:
+        with pytest.raises(ValueError, match=f"'{z}' has probability 0 after '{a}'"):
+            belief_update(pomdp, b, a, z)
+    else:
+        after = belief_update(pomdp, b, a, z)
+        np.testing.assert_allclose(after, joint / joint.sum(), rtol=0, atol=1e-12)
+        assert abs(after.sum() - 1) < 1e-12
+
+
+@settings(max_examples=100, deadline=None)
+@given(look=looks())
+def test_what_is_expected_after_all_observations_is_the_prediction(look):
+    pomdp, b, a, _ = look
+    chances, beliefs = successors(pomdp, b, a)
+    np.testing.assert_allclose(chances.sum(), 1, atol=1e-12)
+    mixed = sum(chance * belief for chance, belief in zip(chances, beliefs, strict=True) if chance)
+    np.testing.assert_allclose(mixed, predict(pomdp, b, a), rtol=0, atol=1e-12)
+    for z, chance in enumerate(chances):
+        assert np.isclose(chance, by_enumeration(pomdp, b, a, z).sum(), rtol=0, atol=1e-12)
+        if chance > 0:
+            np.testing.assert_allclose(beliefs[z], belief_update(pomdp, b, a, z), atol=1e-12)
+        else:
+            assert np.isnan(beliefs[z]).all()
+
+
+@settings(max_examples=50, deadline=None)
+@given(look=looks(), mix=st.floats(0, 1))
+def test_prediction_and_reward_are_linear_in_the_belief(look, mix):
+    pomdp, b, a, _ = look
+    both = mix * b + (1 - mix) * pomdp.start
+    for f in (lambda x: predict(pomdp, x, a), lambda x: expected_rewards(pomdp, x)):
+        np.testing.assert_allclose(f(both), mix * f(b) + (1 - mix) * f(pomdp.start), atol=1e-12)
+    for s in range(pomdp.n_states):  # who sees the state is in the MDP
+        np.testing.assert_array_equal(predict(pomdp, np.eye(pomdp.n_states)[s], a), pomdp.T[a, s])
+
+
+@settings(max_examples=50, deadline=None)
+@given(look=looks())
+def test_the_order_of_looks_that_move_nothing_does_not_matter(look):
+    pomdp, b, a, z = look
+    still = POMDP(np.repeat([np.eye(len(b))], pomdp.n_actions, 0), pomdp.O, pomdp.R, 0.9)
+    other = (z + 1) % pomdp.n_observations
+    chance = (b * still.O[a, :, z] * still.O[a, :, other]).sum()
+    assume(chance > 1e-9)
+    one = belief_update(still, belief_update(still, b, a, z), a, other)
+    two = belief_update(still, belief_update(still, b, a, other), a, z)
+    np.testing.assert_allclose(one, two, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("function", [predict, successors])
+def test_a_belief_or_an_action_that_is_none_is_refused(function):
+    tiger = problem("tiger")
+    for b in ([0.5, 0.6], [1.5, -0.5], [1.0], [np.nan, 1], [[0.5, 0.5]]):
+        with pytest.raises(ValueError, match="b must"):
+            function(tiger, b, 0)
+        with pytest.raises(ValueError, match="b must"):
+            expected_rewards(tiger, b)
+    for a in (-1, 3, 0.5, True):
+        with pytest.raises(ValueError, match=r"a must be an integer in \[0, 2\]"):
+            function(tiger, [0.5, 0.5], a)
+    for z in (-1, 2, "hear-left"):
+        with pytest.raises(ValueError, match=r"z must be an integer in \[0, 1\]"):
+            belief_update(tiger, [0.5, 0.5], 0, z)
+
+
+# The thesis
+
+
+def test_erratum_11_the_floors_after_one_step_down():
+    floors = problem("floors")
+    down = floors.actions.index("down")
+    assert floors.states == ("fourth", "third", "second", "first")  # the order of the thesis
+    np.testing.assert_array_equal(floors.start, [0.25] * 4)
+    np.testing.assert_array_equal(
+        belief_update(floors, floors.start, down, 0), [0, 0.25, 0.25, 0.5]
+    )
+    # The printed numbers are another thing: uniform over the floors that are still possible.
+    possible = predict(floors, floors.start, down) > 0
+    np.testing.assert_allclose(possible / possible.sum(), [0, 0.33, 0.33, 0.33], atol=0.005)
+    # Three steps down and the robot knows where it is.
+    b = floors.start
+    for _ in range(3):
+        b = belief_update(floors, b, down, 0)
+    np.testing.assert_array_equal(b, [0, 0, 0, 1])
+
+
+def test_errata_12_and_14_the_corridor():
+    corridor = problem("corridor")
+    right, nothing = corridor.actions.index("right"), corridor.observations.index("nothing")
+    np.testing.assert_allclose(corridor.start, [1 / 3, 1 / 3, 0, 1 / 3])
+    once = belief_update(corridor, corridor.start, right, nothing)
+    np.testing.assert_allclose(once, [0.1, 0.45, 0, 0.45], atol=1e-12)
+    # The first step needs that the goal was not observed, too: without it, goal has a third.
+    assert predict(corridor, corridor.start, right)[2] == pytest.approx(1 / 3)
+    twice = belief_update(corridor, once, right, nothing)
+    np.testing.assert_allclose(twice, [0.1, 0.164, 0, 0.736], atol=5e-4)
+    # With the belief under the sum twice, as equation 2.15 prints it, the step goes elsewhere.
+    joint = (once**2 @ corridor.T[right]) * corridor.O[right, :, nothing]
+    np.testing.assert_allclose(joint / joint.sum(), [0.1, 0.042, 0, 0.858], atol=5e-4)
+    assert (twice[[0, 1, 3]] > 0).all()
+
+
+def test_figure_2_16_the_rewards_at_a_quarter():
+    np.testing.assert_allclose(expected_rewards(problem("two_state"), [0.25, 0.75]), [0.25, 1.125])
+
+
+# Where beliefs lie
+
+
+@pytest.mark.parametrize(("n_states", "resolution"), [(1, 5), (2, 7), (3, 4), (4, 6), (6, 3)])
+def test_a_grid_holds_every_belief_of_its_fineness_once(n_states, resolution):
+    grid = simplex_grid(n_states, resolution)
+    assert grid.shape == (math.comb(resolution + n_states - 1, n_states - 1), n_states)
+    parts = grid * resolution
+    np.testing.assert_array_equal(parts, parts.round())
+    np.testing.assert_array_equal(parts.sum(axis=1), resolution)
+    assert (grid >= 0).all()
+    assert len(np.unique(grid, axis=0)) == len(grid)
+    np.testing.assert_array_equal(grid[[0, -1]], np.eye(n_states)[[-1, 0]])
+
+
+def test_a_grid_that_is_none_is_refused():
+    for arguments in ((0, 3), (3, 0), (2.5, 3), (3, "fine")):
+        with pytest.raises(ValueError, match="must be an integer >= 1"):
+            simplex_grid(*arguments)
+    with pytest.raises(ValueError, match="at most 1000000 points, got 100, which gives"):
+        simplex_grid(60, 100)
+
+
+def test_the_triangle_and_back():
+    grid = simplex_grid(3, 12)
+    xy = to_triangle(grid)
+    np.testing.assert_allclose(from_triangle(xy), grid, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(from_triangle(to_triangle(grid[5])), grid[5], atol=1e-12)
+    corners = to_triangle(np.eye(3))
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1)
+    np.testing.assert_allclose(sides, 1)
+    # The probability of a state is the height over its opposite side, of a full height sqrt(3)/2.
+    np.testing.assert_allclose(xy[:, 1], grid[:, 2] * math.sqrt(3) / 2, atol=1e-12)
+    np.testing.assert_allclose(to_triangle(np.full(3, 1 / 3)), corners.mean(axis=0))
+
+
+def test_what_lies_outside_the_triangle_is_refused():
+    for xy in ([0, 0.1], [1.1, 0], [0.5, 0.9], [[0.5, 0.1], [0.5, -0.1]]):
+        with pytest.raises(ValueError, match="xy must lie in the triangle, got"):
+            from_triangle(xy)
+    for xy in ([0.5], [[0.1, 0.2, 0.3]], "corner"):
+        with pytest.raises(ValueError, match="xy must"):
+            from_triangle(xy)
+    for b in ([0.5, 0.5], [0.5, 0.5, 0.5], [[1, 0, 0], [0.3, 0.3, 0.3]]):
+        with pytest.raises(ValueError, match="b must"):
+            to_triangle(b)
