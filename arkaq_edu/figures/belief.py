@@ -28,6 +28,7 @@ from .. import _checks
 from ..pomdp import Calibration, belief_update, problem, successors
 from . import style
 from .diagram import Diagram, Place, blank, link, moment, wire, words
+from .pomdp import COLORS
 
 #: What the thesis prints for the floors after a move down.
 PRINTED_FLOORS = (0.0, 0.33, 0.33, 0.33)
@@ -402,7 +403,8 @@ def figure_2_13(ax: Axes | None = None, *, p: float = 0.4) -> SuccessorsPlot:
         (-1.75, 1.75), (6.4, 3.4),
     )  # fmt: skip
     drawn = {}
-    for a, (row, color) in enumerate(zip((1, -1), style.action_colors(pomdp.actions), strict=True)):
+    for a, row in enumerate((1, -1)):
+        color = COLORS[pomdp.actions[a]]
         ax.plot([0, 1], [row, row], color=style.QUIET, linewidth=1)
         ax.text(-0.04, row, pomdp.actions[a], ha="right", va="center", color=color)
         chances, beliefs = successors(pomdp, [p, 1 - p], a)

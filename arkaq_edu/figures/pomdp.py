@@ -49,9 +49,9 @@ Floats = NDArray[np.float64]
 COLORS = {
     name: style.ACTIONS[like]
     for like, names in {
-        "forward": ("a1", "listen", "step-ahead"),
-        "left": ("a2", "open-left", "step-left", "turn-left"),
-        "right": ("open-right", "step-right", "turn-right"),
+        "forward": ("a1", "down", "listen", "step-ahead"),
+        "left": ("a2", "left", "open-left", "step-left", "turn-left", "up"),
+        "right": ("open-right", "right", "step-right", "turn-right"),
         "kick": ("look",),
     }.items()
     for name in names

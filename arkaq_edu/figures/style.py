@@ -105,18 +105,6 @@ def view_axes(ax: Axes | None = None, *, title: str = "") -> Axes:
     return ax
 
 
-def action_colors(actions: Sequence[str]) -> list[str]:
-    """Return a colour for each of up to four actions: that of its name, or one that is left.
-
-    Examples
-    --------
-    >>> action_colors(["listen", "right"]) == [ACTIONS["forward"], ACTIONS["right"]]
-    True
-    """
-    left = [color for name, color in ACTIONS.items() if name not in actions]
-    return [ACTIONS[action] if action in ACTIONS else left.pop(0) for action in actions]
-
-
 def measurements(x: ArrayLike, y: ArrayLike, ax: Axes | None = None, **style: Any) -> Line2D:
     """Draw hollow marks: what a sensor gave, or what somebody printed.
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..figures import style
 from ..figures.belief import short
+from ..figures.pomdp import COLORS, CORNERS
 from ..pomdp import POMDP, belief_update, predict, problem, successors
 from .explorer import Explorer
 from .scene import Cells, Layer, Line, Panel, Points, Scene, Text
@@ -25,7 +26,7 @@ Floats = NDArray[np.float64]
 
 # Corners of the simplex of three and of four states, in the order of the states. The tetrahedron is
 # seen from outside: the edge from its first corner to its third is at the back.
-_TRIANGLE = np.array([[0.0, 0.0], [0.5, 0.866], [1.0, 0.0]])
+_TRIANGLE = (CORNERS - CORNERS[0]) / np.sqrt(3)
 _TETRAHEDRON = np.array([[0.0, 0.12], [0.42, 0.95], [1.0, 0.4], [0.6, -0.05]])
 _HIDDEN = (0, 2)
 
@@ -311,7 +312,7 @@ def _trail(pomdp: POMDP, way: Walk) -> Panel:
     layers += _way(places[:, 0], places[:, 1])
     for (x, y), state in zip(corners, pomdp.states, strict=True):
         beside = 0.2 < y < 0.8  # else above or below the corner
-        left = x + 0.04 if beside else x - 0.015 * len(state)
+        left = x + 0.04 if beside else x - 0.015 * len(state) - 0.07 * (x == 0)
         at = y if beside else y + (0.07 if y > 0.5 else -0.07)
         layers.append(Text(left, at, state, style.QUIET))
     return Panel("", "", (-0.2, 1.3), (-0.25, 1.1), layers, width=1.05, bare=True)
@@ -365,16 +366,16 @@ def _chances(pomdp: POMDP, way: Walk) -> Panel:
     """Draw how likely each observation is, after each action that may be chosen now."""
     layers: list[Layer] = []
     y = 0.0
-    for a, color in enumerate(style.action_colors(pomdp.actions)):
+    for a, action in enumerate(pomdp.actions):
         if way.pending is None:
             chances = successors(pomdp, way.beliefs[-1], a).chances
         elif way.pending == a:
             chances = way.beliefs[-1] @ pomdp.O[a]
         else:
             continue
-        layers.append(Text(-0.92, y, f"after {pomdp.actions[a]}", style.QUIET))
+        layers.append(Text(-0.92, y, f"after {action}", style.QUIET))
         rows = y - 1 - np.arange(pomdp.n_observations)
-        layers.append(_blocks(chances, rows, color))
+        layers.append(_blocks(chances, rows, COLORS[action]))
         for name, p, row in zip(pomdp.observations, chances, rows, strict=True):
             layers.append(Text(-0.86, row, name))
             layers.append(Text(p + 0.03, row, short(p)))
