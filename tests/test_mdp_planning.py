@@ -154,6 +154,14 @@ def test_policies_that_never_differ_end_at_the_lowest_action():
     assert not value_iteration(mdp, tol=1e-6)[1].any()
 
 
+def test_actions_that_a_loose_tolerance_cannot_tell_apart_count_as_equal():
+    """To wait for 1 a step, for ever, is worth 9 at the start; the other action pays 9 at once."""
+    wait, take = [[0, 1, 0], [0, 1, 0], [0, 0, 1]], [[0, 0, 1], [0, 1, 0], [0, 0, 1]]
+    mdp = MDP([wait, take], [[0, 9], [1, 1], [0, 0]], 0.9)
+    values, policy = value_iteration(mdp, tol=0.5)
+    assert 9.5 < values[1] < 10 and policy.tolist() == [0, 0, 0]
+
+
 def test_gamma_near_one_and_a_tolerance_below_the_floats_still_end():
     mdp = MDP([[[0.5, 0.5], [0.5, 0.5]]], [[1e6], [-1e6 / 3]], 0.999)
     values, _ = value_iteration(mdp, tol=1e-12)
@@ -263,6 +271,20 @@ def test_steps_never_go_where_the_probability_is_zero():
     s_next, r, _ = mdp.step(s, 0, rng=1)
     assert (mdp.T[0, s, s_next] > 0).all()
     assert (r == s + 1).all()
+
+
+class Last(np.random.Generator):
+    """A generator that draws the largest number below 1."""
+
+    def random(self, size=None):
+        return np.full(size, np.nextafter(1, 0))
+
+
+def test_a_row_that_sums_to_nearly_one_is_never_drawn_past():
+    short = [0.5, 0.5 - 8e-10, 0.0]
+    mdp = MDP([[short, short, [0, 0, 1]]], [[0.0]] * 3, 0.9)
+    s_next, _, _ = mdp.step([0, 1], 0, rng=Last(np.random.PCG64(0)))
+    assert s_next.tolist() == [1, 1]
 
 
 def test_ends_are_left_by_no_action_and_earn_nothing():
