@@ -7,13 +7,14 @@ from hypothesis import given, settings
 
 from arkaq_edu.mdp import policy_iteration
 from arkaq_edu.pomdp import POMDP, belief_update, problem, solve_point_based, solve_pomdp
-from arkaq_edu.pomdp.points import fast_informed_bound
+from arkaq_edu.pomdp.bounds import fast_informed_bound
 
 
 @st.composite
 def small_pomdps(draw):
     """Random models with many zeros among their probabilities."""
-    n_states, n_actions, n_observations = draw(st.tuples(*[st.integers(1, 3)] * 3))
+    n_states = draw(st.integers(1, 3))
+    n_actions, n_observations = draw(st.integers(1, 2)), draw(st.integers(1, 2))
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
 
     def rows(*shape):
@@ -40,9 +41,9 @@ def beliefs_of(pomdp, rng, n=50):
 def test_the_optimal_value_lies_between(pomdp, max_backups):
     found = solve_point_based(pomdp, tol=1e-6, max_backups=max_backups)
     scale = np.abs(pomdp.R).max() / (1 - pomdp.gamma)
-    exact = solve_pomdp(pomdp, tol=1e-6 * scale)
+    exact = solve_pomdp(pomdp, tol=1e-4 * scale)
     beliefs = beliefs_of(pomdp, np.random.default_rng(0))
-    optimal, slack = exact.value(beliefs), 2e-6 * scale
+    optimal, slack = exact.value(beliefs), 2e-4 * scale
     lower, upper = found.lower.value(beliefs), found.upper(beliefs)
     assert (lower <= optimal + slack).all()
     assert (optimal <= upper + slack).all()
@@ -71,7 +72,7 @@ def test_the_tiger_to_a_thousandth():
 def test_the_courses_problems_close(name):
     pomdp = problem(name)
     found = solve_point_based(pomdp)
-    assert 0 <= found.gap <= 1e-3
+    assert -1e-9 <= found.gap <= 1e-3
     optimal = solve_pomdp(pomdp, tol=1e-4).value(pomdp.start)
     assert found.lower.value(pomdp.start) - 1e-4 <= optimal <= found.upper(pomdp.start) + 1e-4
 

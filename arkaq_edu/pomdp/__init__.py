@@ -8,7 +8,7 @@ Thesis 2.3.
 - `trees`: policy trees and what they earn;
 - `value`: a value function, the upper surface of vectors; `graph`: plans without an end;
 - `pruning`: which vectors are needed, and who dominates the others; `_simplex`: its loops;
-- `solve`: exact value iteration; `points`: bounds where that is out of reach;
+- `solve`: exact value iteration; `bounds`: from points, where that is out of reach;
 - `agent`: keep the belief and act on it.
 """
 
@@ -22,11 +22,11 @@ from arkaq_edu.pomdp.belief import (
     predict,
     successors,
 )
+from arkaq_edu.pomdp.bounds import PointBased, UpperBound, solve_point_based
 from arkaq_edu.pomdp.files import PomdpFormatError, problem, read_pomdp, write_pomdp
 from arkaq_edu.pomdp.graph import PolicyGraph
 from arkaq_edu.pomdp.grid import from_triangle, simplex_grid, to_triangle
 from arkaq_edu.pomdp.model import POMDP
-from arkaq_edu.pomdp.points import PointBased, UpperBound, solve_point_based
 from arkaq_edu.pomdp.pruning import Domination, dominated, prune
 from arkaq_edu.pomdp.solve import bellman_error, solve_pomdp
 from arkaq_edu.pomdp.trees import PolicyTree, all_trees, tree_value

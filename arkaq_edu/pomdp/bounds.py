@@ -1,4 +1,4 @@
-"""Point-based solution: where an exact value function is out of reach, one between two bounds."""
+"""Bounds on the optimal value from points: for models whose exact solution is out of reach."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from tqdm.auto import tqdm
 
 from arkaq_edu._checks import array, distribution, integer, number
 from arkaq_edu._compiled import kernel
-from arkaq_edu.pomdp.graph import PolicyGraph
 from arkaq_edu.pomdp.model import POMDP
 from arkaq_edu.pomdp.value import ValueFunction
 
@@ -39,6 +38,15 @@ class UpperBound:
         The bound there.
     vectors : ndarray, shape (A, S)
         The fast informed bound, max_a b . vectors[a], which holds as well.
+
+    Examples
+    --------
+    Between two corners with the value 4 the bound is known to be 2 in the middle.
+
+    >>> upper = UpperBound(np.array([4.0, 4.0]), np.array([[0.5, 0.5]]), np.array([2.0]),
+    ...                    np.array([[9.0, 9.0]]))
+    >>> upper([[1, 0], [0.75, 0.25], [0.5, 0.5]])
+    array([4., 3., 2.])
     """
 
     corners: Floats
@@ -47,13 +55,29 @@ class UpperBound:
     vectors: Floats
 
     def __call__(self, b: ArrayLike) -> Any:
-        """Return the bound at a belief, shape (S,), or at many, shape (N, S)."""
+        """Return the bound at a belief, or at many.
+
+        Parameters
+        ----------
+        b : array_like, shape (S,) or (N, S)
+            The beliefs.
+
+        Returns
+        -------
+        float, or ndarray of shape (N,)
+
+        Raises
+        ------
+        ValueError
+            If `b` is no distribution over the states.
+        """
         n_states = len(self.corners)
         many = np.ndim(b) == 2
         beliefs = distribution("b", array("b", b, (None, n_states) if many else (n_states,)))
+        rows = np.array(beliefs, ndmin=2)  # a copy: kernels are compiled for what can be written
         below = self.values - self.points @ self.corners
-        bounds = np.empty(len(np.atleast_2d(beliefs)))
-        _upper(np.atleast_2d(beliefs), self.corners, self.points, below, self.vectors, bounds)
+        bounds = np.empty(len(rows))
+        _upper(rows, self.corners, self.points, below, self.vectors, bounds)
         return bounds if many else float(bounds[0])
 
 
@@ -70,7 +94,16 @@ class PointBased:
     start : ndarray, shape (S,)
         The belief where the search began, and where the two are near each other.
     backups : int
-        How many times a vector was made.
+        How many times a belief was used to improve both.
+
+    Examples
+    --------
+    >>> pomdp = POMDP(T=[np.eye(2)] * 2, O=[[[1], [1]]] * 2, R=[[1, 0], [0, 1]], gamma=0.5)
+    >>> found = solve_point_based(pomdp)
+    >>> found
+    PointBased(1 to 1.00098 at the start, 2 vectors, 9 points)
+    >>> found.lower.value([0.75, 0.25]), found.upper([0.75, 0.25])
+    (1.5, 1.50048828125)
     """
 
     lower: ValueFunction
@@ -258,9 +291,11 @@ class _Search:
         self.pomdp = pomdp
         self.chances = np.ascontiguousarray(pomdp.O.transpose(0, 2, 1))
         n = np.arange(pomdp.n_actions)
-        blind = PolicyGraph(n, np.repeat(n[:, np.newaxis], pomdp.n_observations, axis=1))
-        self.alphas, self.actions = _Rows(blind.values(pomdp)), _Rows(blind.actions)
-        self.branches = _Rows(blind.branches)
+        # What each action earns that is taken again and again.
+        systems = np.eye(pomdp.n_states) - pomdp.gamma * pomdp.T
+        self.alphas = _Rows(np.linalg.solve(systems, pomdp.R.T[..., np.newaxis])[..., 0])
+        self.actions = _Rows(n)
+        self.branches = _Rows(np.repeat(n[:, np.newaxis], pomdp.n_observations, axis=1))
         self.vectors = fast_informed_bound(pomdp)
         self.corners = self.vectors.max(axis=0)
         self.points, self.below = _Rows(np.empty((0, pomdp.n_states))), _Rows(np.empty(0))
@@ -275,7 +310,7 @@ class _Search:
         return bounds
 
     def gap(self, b: Floats) -> float:
-        return float(self.upper(b[np.newaxis])[0]) - self.lower(b)
+        return float(self.upper(np.array([b]))[0]) - self.lower(b)
 
     def look(self, b: Floats) -> Ahead:
         joint = (b @ self.pomdp.T)[:, np.newaxis] * self.chances
@@ -291,7 +326,7 @@ class _Search:
         pomdp, ahead = self.pomdp, self.look(b)
         rewards = b @ pomdp.R
         high = (rewards + pomdp.gamma * ahead.upper.sum(axis=1)).max()
-        if high < self.upper(b[np.newaxis])[0] - TINY * abs(high):
+        if high < self.upper(np.array([b]))[0] - TINY * abs(high):
             self.points.append(b)
             self.below.append(high - b @ self.corners)
         earned = rewards + pomdp.gamma * ahead.lower.sum(axis=1)
