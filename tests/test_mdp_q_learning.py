@@ -216,6 +216,16 @@ def test_boltzmann_limits():
     assert learner.probabilities(0, 1e-3)[0] == 1.0
 
 
+def test_boltzmann_of_values_whose_difference_is_no_float():
+    """At a temperature as large as the values the worse has exp(-2) of the better's chance."""
+    learner = QLearner(1, 2, alpha=1.0, gamma=0.0, rng=1)
+    learner.Q[0] = [-1.5e308, 1.5e308]
+    worse = 1 / (1 + math.exp(2))
+    assert learner.probabilities(0, 1.5e308)[0] == pytest.approx(worse)
+    drawn = sum(learner.boltzmann(0, 1.5e308) == 0 for _ in range(2000))
+    assert drawn / 2000 == pytest.approx(worse, abs=0.03)
+
+
 def test_boltzmann_sees_differences_only():
     """A constant on all values leaves the choice alone, even one that swallows small gaps."""
     learner = QLearner(1, 2, alpha=1.0, gamma=0.0)
