@@ -195,6 +195,22 @@ def test_exploiting_cools_down_to_the_shortest_way():
         assert len(run.changes) < 100_000
 
 
+def test_exploiting_draws_by_temperature_and_asks_its_schedule_once_a_backup():
+    asked = []
+
+    def cooling(n):
+        asked.append(n)
+        return 0.5 if n <= 2000 else 0.0
+
+    env = Script(*[(0, 5.0, False, False)] * 2050)
+    learner = QLearner(1, 2, alpha=1e-12, gamma=0.0, rng=3)  # it changes, and learns nothing
+    learner.Q[0] = [0.0, 1.0]
+    exploit(env, learner, temperature=cooling, max_backups=2050, max_repeat=1, tol=0.0)
+    assert asked == list(range(1, 2051))
+    assert np.mean(env.actions[:2000]) == pytest.approx(1 / (1 + np.exp(-2)), abs=0.03)
+    assert set(env.actions[2000:]) == {1}
+
+
 def test_the_same_seed_is_the_same_run():
     runs = []
     for _ in range(2):
