@@ -2,7 +2,8 @@
 
 - `streams`: sightings recorded on the field, and what they say of the senses;
 - `approach`: training, walking to the ball, and how well it is done;
-- `reproduce`: thesis against here, over many seeds.
+- `reproduce`: thesis against here, over many seeds;
+- `kicks`: kicks of a real robot, and simulated ones.
 """
 
 import lazy_loader as _lazy
@@ -22,6 +23,7 @@ __getattr__, __dir__, __all__ = _lazy.attach(
             "train",
             "walk",
         ],
+        "kicks": ["load_kicks", "record_kicks"],
         "reproduce": [
             "agent_file",
             "load_study",

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu import _checks
 from arkaq_edu._compiled import kernel
@@ -40,10 +41,14 @@ class Sighting(NamedTuple):
 
 
 class GoalSighting(NamedTuple):
-    """What one picture says of the sky-blue goal: its middle's orientation, its width (rad)."""
+    """What one picture says of the sky-blue goal: its middle's orientation, its width (rad).
+
+    `whole` tells that the picture holds both its posts.
+    """
 
     orientation: float
     width: float
+    whole: bool
 
 
 @kernel
@@ -135,10 +140,10 @@ def _row(row, x, y, z, heading, tilt, bx, by, panels, posts, lines, image):
 
 
 @kernel
-def _column(col, x, y, z, heading, tilt, bx, by, panels, posts, lines, image):
-    """Cast the rays of one column."""
+def _plumb(cols, x, y, z, heading, tilt, bx, by, panels, posts, lines, image):
+    """Cast one ray a row, each in a column of its own."""
     for row in range(HEIGHT):
-        image[row] = _colour(col, row, x, y, z, heading, tilt, bx, by, panels, posts, lines)
+        image[row] = _colour(cols[row], row, x, y, z, heading, tilt, bx, by, panels, posts, lines)
 
 
 @kernel
@@ -369,17 +374,17 @@ class Camera:
         """
         if self.blurred(world):
             return None
-        view = self._view(world), (_PANELS, _POSTS, _LINES)
+        view = (*self._view(world), _PANELS, _POSTS, _LINES)
         horizon = np.empty(WIDTH, dtype=np.uint8)
-        _row(self._horizon, *view[0], *view[1], horizon)
+        _row(self._horizon, *view, horizon)
 
-        def column(col: int) -> np.ndarray:
+        def plumb(cols: np.ndarray) -> np.ndarray:
             pixels = np.empty(HEIGHT, dtype=np.uint8)
-            _column(col, *view[0], *view[1], pixels)
+            _plumb(cols, *view, pixels)
             return pixels
 
-        seen = self._goal(horizon, column)
-        return seen and GoalSighting(seen.orientation + world.pan, seen.width)
+        seen = self._goal(horizon, plumb)
+        return seen and seen._replace(orientation=seen.orientation + world.pan)
 
     def goal_in(self, colours: np.ndarray) -> GoalSighting | None:
         """Return what a rendered picture shows of the sky-blue goal.
@@ -395,7 +400,7 @@ class Camera:
             The same as `goal` from the same place with the head straight.
         """
         colours = self._checked(colours)
-        return self._goal(colours[self._horizon], lambda col: colours[:, col])
+        return self._goal(colours[self._horizon], lambda cols: colours[np.arange(HEIGHT), cols])
 
     def blurred(self, world: World) -> bool:
         """Return whether a picture taken now would be useless, for the head moves."""
@@ -453,32 +458,39 @@ class Camera:
         """The row whose rays stay as high as the lens; the top row where that is out of view."""
         return max(0, math.floor(HEIGHT / 2 - FOCAL_LENGTH * math.tan(self.tilt)))
 
-    def _ray(self, right: float, down: float) -> tuple[float, float]:
-        """Return the orientation of a ray (rad), and how far it rises on its way."""
-        ahead = FOCAL_LENGTH * math.cos(self.tilt) - down * math.sin(self.tilt)
-        up = -FOCAL_LENGTH * math.sin(self.tilt) - down * math.cos(self.tilt)
-        return math.atan2(-right, ahead), up / math.hypot(ahead, right)
+    def _ahead(self, down: ArrayLike) -> NDArray[np.float64]:
+        """Return how far ahead (pixels) rays go that run so far (pixels) below the axis."""
+        return FOCAL_LENGTH * math.cos(self.tilt) - np.asarray(down) * math.sin(self.tilt)
 
     def _goal(
-        self, horizon: np.ndarray, column: Callable[[int], np.ndarray]
+        self, horizon: np.ndarray, plumb: Callable[[np.ndarray], np.ndarray]
     ) -> GoalSighting | None:
+        """Measure the goal from the pixels of the horizon's row, and of a line down a post."""
         columns = np.flatnonzero(horizon == pitch.BLUE)
         if not len(columns):
             return None
         first, last = int(columns[0]), int(columns[-1])
-        down = self._horizon + 0.5 - HEIGHT / 2
-        left, _ = self._ray(first - WIDTH / 2, down)
-        right, _ = self._ray(last + 1 - WIDTH / 2, down)
+        ahead = self._ahead(self._horizon + 0.5 - HEIGHT / 2)
+        left = math.atan2(WIDTH / 2 - first, ahead)
+        right = math.atan2(WIDTH / 2 - last - 1, ahead)
         cut_left, cut_right = first == 0, last == WIDTH - 1
         if cut_left != cut_right:
-            col = last if cut_left else first
-            rows = np.flatnonzero(column(col) == pitch.BLUE)
-            _, top = self._ray(col + 0.5 - WIDTH / 2, rows[0] - HEIGHT / 2)
-            _, foot = self._ray(col + 0.5 - WIDTH / 2, rows[-1] + 1 - HEIGHT / 2)
-            distance = pitch.GOAL_HEIGHT / (top - foot)
-            width = 2 * math.asin(min(1.0, _GOAL_ACROSS / 2 / distance))
+            width = self._width_by_height((last - 1 if cut_left else first + 1), plumb)
             left, right = (right + width, right) if cut_left else (left, left - width)
-        return GoalSighting((left + right) / 2, left - right)
+        return GoalSighting((left + right) / 2, left - right, not (cut_left or cut_right))
+
+    def _width_by_height(self, col: int, plumb: Callable[[np.ndarray], np.ndarray]) -> float:
+        """Return the width (rad) of a whole goal, one post of which is seen in a column."""
+        # What stands upright leans in the picture of a tilted camera: all of it lies as far to
+        # the right of the axis, for its distance ahead.
+        aside = (col + 0.5 - WIDTH / 2) / self._ahead(self._horizon + 0.5 - HEIGHT / 2)
+        down = np.arange(HEIGHT) + 0.5 - HEIGHT / 2
+        cols = np.floor(aside * self._ahead(down) + WIDTH / 2)
+        rows = np.flatnonzero(plumb(cols.clip(0, WIDTH - 1).astype(np.int64)) == pitch.BLUE)
+        edges = np.array([rows[0], rows[-1] + 1]) - HEIGHT / 2
+        fall = FOCAL_LENGTH * math.sin(self.tilt) + edges * math.cos(self.tilt)
+        top, foot = fall / (self._ahead(edges) * math.hypot(1.0, aside))
+        return 2 * math.asin(min(1.0, _GOAL_ACROSS / 2 * (foot - top) / pitch.GOAL_HEIGHT))
 
     def _sighting(self) -> Sighting | None:
         distance, orientation = _measure(self._blob, self.height, self.tilt, self.min_pixels)

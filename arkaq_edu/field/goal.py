@@ -48,7 +48,8 @@ class GoalSupervisor:
         x = pitch.LENGTH / 2 - self.distance
         world.reset((x, 0.0, -orientation), (x, _WAITING))
 
-    def set_ball(self, world: World) -> None:
+    @staticmethod
+    def set_ball(world: World) -> None:
         """Put the ball before the paw: on its mark but for what grabbing leaves open."""
         x, y, heading = world.pose
         c, s = math.cos(heading), math.sin(heading)

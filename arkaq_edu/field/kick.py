@@ -20,9 +20,10 @@ PAW_RADIUS = 30.0
 SWING = 54.0
 QUICKENING = 14.7
 _AWAKE = 12.0  # mm into the swing; with less speed than here no ball is met
-_STEP = 0.002
-# So far a rolling ball gets in one step (mm): less than it is wide, and than a wall is thick.
-_STRIDE, _LONGEST_STEP = 20.0, 1 / 30
+# How far they get in one step (mm): the paw, and a rolling ball, which then passes through nothing.
+_PAW_STRIDE, _BALL_STRIDE = 2.0, 30.0
+_LONGEST_STEP = 1 / 20
+_STEPS_A_LOOK = 3  # steps between two looks at how fast the ball still is
 _RESTING = 1.0  # mm/s
 
 
@@ -89,12 +90,12 @@ def swing(paw: pymunk.Body, ball: pymunk.Body, step: Callable[[float], None]) ->
     while way < 2 * SWING and ball.velocity.length < _RESTING:
         speed = QUICKENING * way
         paw.velocity = forward * speed
-        step(_STEP)
-        way += speed * _STEP
+        step(_PAW_STRIDE / speed)
+        way += _PAW_STRIDE
 
 
 def roll(ball: pymunk.Body, pull: float, step: Callable[[float], None]) -> list[tuple]:
-    """Let the ball roll until it rests, and return where it was after each step (mm).
+    """Let the ball roll until it rests, and return where it was on the way (mm).
 
     Parameters
     ----------
@@ -107,9 +108,17 @@ def roll(ball: pymunk.Body, pull: float, step: Callable[[float], None]) -> list[
     """
     aside = ball.velocity.normalized().perpendicular() * (pull * ball.mass)
     trail = [tuple(ball.position)]
-    while (speed := ball.velocity.length) > _RESTING:
-        ball.force = aside
-        step(min(_LONGEST_STEP, _STRIDE / speed))
+    speed, bumped = ball.velocity.length, False
+    while speed > _RESTING:
+        # pymunk starts on a contact with the last step's push, scaled up if the step is longer:
+        # so no longer step right after a bump.
+        if not bumped:
+            dt = min(_LONGEST_STEP, _BALL_STRIDE / speed)
+        for _ in range(_STEPS_A_LOOK):
+            ball.force = aside
+            step(dt)
         trail.append(tuple(ball.position))
+        before, speed = speed, ball.velocity.length
+        bumped = before - speed > 2 * _STEPS_A_LOOK * dt * pitch.BALL_DECELERATION
     ball.velocity = 0.0, 0.0
     return trail

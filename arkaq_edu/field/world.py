@@ -191,7 +191,7 @@ class World:
         self.time += CYCLE
 
     def stand(self, seconds: float) -> None:
-        """Stand still for a time (s), counted in the physics' steps."""
+        """Stand still for a time (s), counted in whole steps of the physics."""
         dt = CYCLE / SUBSTEPS
         self._halt()
         for _ in range(math.ceil(_checks.number("seconds", seconds, 0) / dt)):
