@@ -66,6 +66,8 @@ def test_the_tiger_to_a_thousandth():
     assert found.lower.value([0.5, 0.5]) <= 19.37137 <= found.upper([0.5, 0.5])
     assert found.lower.action([0.5, 0.5]) == 0
     assert found.backups < 2000
+    # What others make superfluous is dropped; the exact value function has nine vectors.
+    assert len(found.lower) < 20 and len(found.upper.points) < 200
 
 
 @pytest.mark.parametrize("name", ["ball_side", "corridor", "floors", "three_places"])
@@ -103,12 +105,12 @@ def test_forty_states_are_within_reach():
     blind = solve_point_based(pomdp, max_backups=0)
     assert found.lower.value(pomdp.start) > 1.25 * blind.lower.value(pomdp.start)
     assert found.gap < 0.5 * blind.gap
-    # What it promises is earned: act by it from the same 500 starts for 100 steps.
+    # What it promises is earned: act by it from 200 starts for 90 steps.
     rng = np.random.default_rng(0)
     earned = []
-    for s in rng.choice(40, size=500, p=pomdp.start):
+    for s in rng.choice(40, size=200, p=pomdp.start):
         b, total = pomdp.start, 0.0
-        for t in range(100):
+        for t in range(90):
             a = found.lower.action(b)
             total += pomdp.gamma**t * pomdp.R[s, a]
             s, z, _, _ = pomdp.step(int(s), a, rng)

@@ -101,7 +101,7 @@ class PointBased:
     >>> pomdp = POMDP(T=[np.eye(2)] * 2, O=[[[1], [1]]] * 2, R=[[1, 0], [0, 1]], gamma=0.5)
     >>> found = solve_point_based(pomdp)
     >>> found
-    PointBased(1 to 1.00098 at the start, 2 vectors, 9 points)
+    PointBased(1 to 1.00098 at the start, 2 vectors, 5 points)
     >>> found.lower.value([0.75, 0.25]), found.upper([0.75, 0.25])
     (1.5, 1.50048828125)
     """
@@ -299,7 +299,7 @@ class _Search:
         self.vectors = fast_informed_bound(pomdp)
         self.corners = self.vectors.max(axis=0)
         self.points, self.below = _Rows(np.empty((0, pomdp.n_states))), _Rows(np.empty(0))
-        self.crowded = 2 * len(n), 8
+        self.many_vectors = self.many_points = 2 * len(n)
 
     def lower(self, b: Floats) -> float:
         return float((self.alphas.now @ b).max())
@@ -359,8 +359,8 @@ class _Search:
         return len(path)
 
     def tidy(self) -> None:
-        """Drop what others make superfluous, once there is enough of it to look."""
-        if self.alphas.n > self.crowded[0]:
+        """Drop what others make superfluous, whenever there is a quarter more of it."""
+        if self.alphas.n > self.many_vectors:
             by = np.arange(self.alphas.n)
             _dominated(self.alphas.now, by)
             kept = np.flatnonzero(by == np.arange(len(by)))
@@ -369,10 +369,11 @@ class _Search:
             branches = np.searchsorted(kept, by[self.branches.now[kept]])
             self.alphas, self.actions = _Rows(self.alphas.now[kept]), _Rows(self.actions.now[kept])
             self.branches = _Rows(branches)
-        if self.points.n > self.crowded[1]:
+            self.many_vectors = 5 * len(kept) // 4 + 8
+        if self.points.n > self.many_points:
             kept = np.flatnonzero(_needed(self.points.now, self.below.now))
             self.points, self.below = _Rows(self.points.now[kept]), _Rows(self.below.now[kept])
-        self.crowded = int(1.2 * self.alphas.n) + 8, int(1.2 * self.points.n) + 8
+            self.many_points = 5 * len(kept) // 4 + 8
 
 
 def solve_point_based(pomdp: POMDP, tol: float = 1e-3, max_backups: int = 10_000) -> PointBased:
