@@ -189,7 +189,7 @@ def scored(env, policy, episodes):
     return sum(play(env, policy)[3][-1]["is_success"] for _ in range(episodes))
 
 
-@pytest.mark.parametrize(("place", "aimed", "random"), [("near", 0.63, 0.34), ("far", 0.34, 0.115)])
+@pytest.mark.parametrize(("place", "aimed", "random"), [("near", 0.63, 0.33), ("far", 0.36, 0.12)])
 def test_aim_and_luck_score_as_often_as_the_docstring_says(place, aimed, random):
     env = gymnasium.make(TASK, goal_distance=place)
     for policy, share in ((take_aim, aimed), (at_random(7), random)):

@@ -12,5 +12,6 @@ __getattr__, __dir__, __all__ = _lazy.attach(
         "ball_approach": ["BallApproachEnv"],
         "pomdp": ["POMDPEnv"],
         "score_goal": ["ScoreGoalEnv"],
+        "wrappers": ["FullState", "PixelObservation"],
     },
 )

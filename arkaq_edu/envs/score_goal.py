@@ -107,8 +107,8 @@ class ScoreGoalEnv(gymnasium.Env[np.ndarray, int]):
     -----
     The thesis gives neither distances, turn nor starts. The kick decides them: it is calibrated on
     50 kicks of a real robot (`arkaq_edu.field.Kick`), and aimed as well as turns of .15 rad allow
-    it scores 63 % from 1,850 mm, where actions at random score 34 %: the thesis's "around 60" and
-    "around 35 per cent". From 2,300 mm it is 35 % and 12 %.
+    it scores 63 % from 1,850 mm, where actions at random score 33 %: the thesis's "around 60" and
+    "around 35 per cent". From 2,300 mm it is 36 % and 12 %.
 
     References
     ----------
