@@ -123,7 +123,7 @@ def example_mdp() -> MDP:
     """
     T = [
         [[0.3, 0.7, 0.0], [0.6, 0.0, 0.4], [0.0, 0.2, 0.8]],
-        [[0.0, 0.4, 0.6], [0.0, 1.0, 0.0], [0.9, 0.0, 0.1]],
+        [[0.2, 0.8, 0.0], [0.0, 0.3, 0.7], [0.9, 0.0, 0.1]],
     ]
     return MDP(T, R=[[0, -1], [5, 0], [0, 2]], gamma=0.9)
 
@@ -150,7 +150,7 @@ def figure_2_4(ax: Axes | None = None, *, mdp: MDP | None = None) -> TransitionP
     --------
     >>> from matplotlib.figure import Figure
     >>> figure_2_4(Figure().subplots())
-    3 states, 6 choices, 11 transitions; spirals are rewards
+    3 states, 6 choices, 12 transitions; spirals are rewards
     """
     return plot_transitions(example_mdp() if mdp is None else mdp, ax)
 
@@ -293,7 +293,7 @@ def _spiral(
     """Draw a coil that leaves a choice where there is room, and the reward at its end."""
     around = np.linspace(0, 2 * np.pi, 25)[:-1]
     ways = np.column_stack([np.cos(around), np.sin(around)])
-    end = _free(start + 0.95 * ways, taken)
+    end = _free(start + 1.08 * ways, taken)
     along = (end - start) / np.hypot(*(end - start))
     across = np.array([-along[1], along[0]])
     turn = np.linspace(0, 4 * 2 * np.pi, 120)
