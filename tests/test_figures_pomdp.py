@@ -206,6 +206,22 @@ def test_figure_2_11_has_seven_planes_and_is_low_where_nothing_is_known(ax):
     assert len(colors) == 7, "shaded, so that planes of one action can be told apart"
 
 
+def test_the_policy_graph_of_tiger_listens_until_one_side_is_two_ahead(ax):
+    tiger = problem("tiger")
+    V = solve_pomdp(tiger)
+    plot = pomdp.plot_policy_graph(V, tiger, ax)
+    row = sorted(plot.parts, key=lambda name: plot.parts[name].get_position())
+    names = [plot.parts[name].get_text() for name in row]
+    assert names == ["open-left", "listen", "listen", "listen", "open-right"]
+    steps = {(row.index(start), row.index(end)) for start, end in plot.wires}
+    assert steps == {(0, 2), (1, 0), (1, 2), (2, 1), (2, 3), (3, 2), (3, 4), (4, 2)}
+    for start, end in plot.wires:
+        assert int(end) in V.branches[int(start)]
+    assert row[2] == str(V.best(tiger.start))
+    with pytest.raises(ValueError, match="V must be a value function without a horizon"):
+        pomdp.plot_policy_graph(pomdp.solved("tiger", 2), tiger, ax)
+
+
 def test_two_states_make_a_line_and_three_a_bowl():
     with pytest.raises(ValueError, match="alphas must"):
         pomdp.bowl(pomdp.solved("two_state", 1), 0, 30)

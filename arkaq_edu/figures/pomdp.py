@@ -24,7 +24,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.lines import Line2D
-from matplotlib.patches import Rectangle
+from matplotlib.patches import FancyArrowPatch, Rectangle
 from matplotlib.text import Text
 from numpy.typing import ArrayLike, NDArray
 
@@ -773,6 +773,79 @@ def figure_2_17(ax: Axes | None = None) -> DominationPlot:
     _tag(ax, (0.3, mixed @ [0.3, 0.7]), shares, (0, 6), style.QUIET)
     ax.set(ylim=(0.4, 2.8))
     return DominationPlot(ax, lines, mixture, found)
+
+
+def plot_policy_graph(V: ValueFunction, pomdp: POMDP, ax: Axes | None = None) -> Diagram:
+    """Draw the plan without an end that begins at the start: nodes in the order of their beliefs.
+
+    Parameters
+    ----------
+    V : ValueFunction
+        Over two states, without a horizon.
+    pomdp : POMDP
+        Where the names and the start come from.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+
+    Returns
+    -------
+    Diagram
+        ``parts`` by the number of the node, as text; ``wires`` by the two numbers. Only the nodes
+        that can be reached are there.
+
+    Raises
+    ------
+    ValueError
+        If `V` has a horizon, or there are not two states.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> tiger = problem("tiger")
+    >>> plot_policy_graph(solve_pomdp(tiger), tiger, Figure().subplots())
+    5 of 9 nodes can be reached from the start
+    """
+    if V.graph is None:
+        raise ValueError(f"V must be a value function without a horizon, got {V!r}")
+    plans, _ = upper_surface(V.alphas)
+    reached = [V.best(pomdp.start)]
+    for k in reached:  # it grows as it is walked
+        reached += [j for j in dict.fromkeys(V.branches[k].tolist()) if j not in reached]
+    row = [k for k in plans.tolist() if k in reached]
+    title = f"{len(row)} of {len(V)} nodes can be reached from the start"
+    if ax is None:
+        _, ax = plt.subplots(figsize=(8.4, 3.2), layout="constrained")
+    ax = blank(ax, title, (-0.7, 2 * len(row) - 1.3), (-1.5, 1.5))
+    parts, wires = {}, {}
+    for i, k in enumerate(row):
+        x = 2.0 * i
+        parts[str(k)] = _action(ax, (x, 0.0), pomdp.actions[V.actions[k]])
+        for j in dict.fromkeys(V.branches[k].tolist()):
+            ahead = row.index(j) - i
+            wires[str(k), str(j)] = _arc(ax, x, x + 2 * ahead)
+            seen = np.flatnonzero(V.branches[k] == j)
+            every = len(seen) == pomdp.n_observations
+            name = "whatever" if every else " or ".join(pomdp.observations[z] for z in seen)
+            words(ax, (x + ahead, 0.45 * ahead + 0.25 * np.sign(ahead)), name)
+    ax.text(
+        2.0 * row.index(reached[0]), -0.36, "start", ha="center", va="top", fontsize=9,
+        color=style.QUIET,
+    )  # fmt: skip
+    ends = (-0.7, "left"), (2 * len(row) - 1.3, "right")
+    for (x, side), name in zip(ends, pomdp.states[::-1], strict=True):
+        ax.text(x, -1.45, f"surely {name}", ha=side, va="bottom", color=style.QUIET, fontsize=9)
+    return Diagram(ax, parts, wires)
+
+
+def _arc(ax: Axes, start: float, end: float) -> FancyArrowPatch:
+    """Draw an arrow along a row: to the right above it, to the left below it."""
+    way = float(np.sign(end - start))
+    arrow = FancyArrowPatch(
+        (start + 0.2 * way, 0.3 * way), (end - 0.3 * way, 0.3 * way),
+        connectionstyle="arc3,rad=-0.45", arrowstyle="-|>", mutation_scale=12, color=style.INK, linewidth=1.1,
+    )  # fmt: skip
+    ax.add_patch(arrow)
+    return arrow
 
 
 def plan_value(pomdp: POMDP, action: int, after: Sequence[int]) -> Floats:
