@@ -374,7 +374,7 @@ def figure_2_10(ax: Axes | None = None) -> SurfacePlot:
 
 
 def figure_2_11(
-    ax: Axes | None = None, *, horizon: int = 2, azimuth: float = -15.0, elevation: float = 32.0
+    ax: Axes | None = None, *, horizon: int = 2, azimuth: float = 46.0, elevation: float = 38.0
 ) -> BowlPlot:
     """Draw figure 2.11: a value function over three states, a bowl over the triangle of beliefs.
 
@@ -410,7 +410,7 @@ def figure_2_11(
     )
     if ax is None:
         _, ax = plt.subplots(figsize=(6.4, 5.4), layout="constrained")
-    ax = blank(ax, title, (-1.2, 1.2), (-1.3, 1.3))
+    ax = blank(ax, title, (-1.2, 1.2), (-1.45, 1.3))
     colors = [COLORS[pomdp.actions[V.actions[k]]] for k in seen.plans]
     shadows = style.cells(seen.shadows, [to_hex(paler(color, 0.55)) for color in colors], ax)
     for (foot, top), name in zip(seen.corners, pomdp.states, strict=True):

@@ -233,7 +233,7 @@ def bowl_explorer() -> Explorer:
     --------
     >>> explorer = bowl_explorer()
     >>> explorer
-    2 steps to go, seen from -14° and 32° up: 7 planes; 1.80 in the middle, 5.00 at the corners
+    2 steps to go, seen from 46° and 38° up: 7 planes; 1.80 in the middle, 5.00 at the corners
     """
     horizon = ipywidgets.IntSlider(
         2, min=HORIZONS[0], max=HORIZONS[-1], description="steps to go", **_SLIDER
@@ -248,7 +248,7 @@ def bowl_explorer() -> Explorer:
         **_SLIDER,
     )
     elevation = ipywidgets.FloatSlider(
-        32, min=0, max=90, step=2, description="eye (degrees up)", readout_format=".0f", **_SLIDER
+        38, min=0, max=90, step=2, description="eye (degrees up)", readout_format=".0f", **_SLIDER
     )
     return Explorer(draw_bowl, horizon=horizon, view=Drag(azimuth, elevation, gain=(60, -60)))
 
