@@ -7,8 +7,9 @@ from arkaq_edu.exercises import ExerciseError, check_best, check_lead, check_two
 from arkaq_edu.pomdp import POMDP, PolicyTree, ValueFunction, tree_value
 
 
-def two_steps(T, O_, R, gamma, a, after):
-    pomdp = POMDP(T, O_, R, gamma)
+def two_steps(T_a, O_a, R, gamma, a, after):
+    actions = R.shape[1]  # the others' transitions and observations do not matter
+    pomdp = POMDP([T_a] * actions, [O_a] * actions, R, gamma)
     return tree_value(pomdp, PolicyTree(a, tuple(PolicyTree(int(then)) for then in after)))
 
 
@@ -41,15 +42,14 @@ def test_a_right_answer_is_praised(check, answer, seed):
     assert check(answer, rng=seed).startswith("Right")
 
 
-def loops(T, O_, R, gamma, a, after):
+def loops(T_a, O_a, R, gamma, a, after):
     """The sums of equation 2.19, one by one."""
     states = range(len(R))
     return [
         R[s, a]
         + gamma
         * sum(
-            T[a, s, t] * sum(O_[a, t, z] * R[t, then] for z, then in enumerate(after))
-            for t in states
+            T_a[s, t] * sum(O_a[t, z] * R[t, then] for z, then in enumerate(after)) for t in states
         )
         for s in states
     ]
@@ -59,53 +59,61 @@ def test_a_list_from_loops_will_do():
     assert check_two_steps(loops, rng=0).startswith("Right")
 
 
-def later(T, O_, R, a, after):
-    return T[a] @ (O_[a] * R[:, after]).sum(axis=1)
+def later(T_a, O_a, R, a, after):
+    return T_a @ (O_a * R[:, after]).sum(axis=1)
 
 
 WRONG = [
     (check_two_steps, not_written, "still empty"),
-    (check_two_steps, lambda T, O_, R, g, a, f: R[:, a], "second step"),
-    (check_two_steps, lambda T, O_, R, g, a, f: g * later(T, O_, R, a, f), "first action's reward"),
+    (check_two_steps, lambda T_a, O_a, R, g, a, f: R[:, a], "second step"),
     (
         check_two_steps,
-        lambda T, O_, R, g, a, f: R[:, a] + later(T, O_, R, a, f),
+        lambda T_a, O_a, R, g, a, f: g * later(T_a, O_a, R, a, f),
+        "first action's reward",
+    ),
+    (
+        check_two_steps,
+        lambda T_a, O_a, R, g, a, f: R[:, a] + later(T_a, O_a, R, a, f),
         "but the discount",
     ),
-    (check_two_steps, lambda T, O_, R, g, a, f: g * two_steps_free(T, O_, R, 1, a, f), "only"),
     (
         check_two_steps,
-        lambda T, O_, R, g, a, f: R[:, a] + g * (O_[a] * R[:, f]).sum(1),
+        lambda T_a, O_a, R, g, a, f: g * two_steps_free(T_a, O_a, R, 1, a, f),
+        "only",
+    ),
+    (
+        check_two_steps,
+        lambda T_a, O_a, R, g, a, f: R[:, a] + g * (O_a * R[:, f]).sum(1),
         "not moved",
     ),
     (
         check_two_steps,
-        lambda T, O_, R, g, a, f: two_steps_free(T.transpose(0, 2, 1), O_, R, g, a, f),
+        lambda T_a, O_a, R, g, a, f: two_steps_free(T_a.T, O_a, R, g, a, f),
         "backwards",
     ),
     (
         check_two_steps,
-        lambda T, O_, R, g, a, f: R[:, a] + g * (O_[a] * (T[a] @ R[:, f])).sum(1),
+        lambda T_a, O_a, R, g, a, f: R[:, a] + g * (O_a * (T_a @ R[:, f])).sum(1),
         "before the state has moved",
     ),
     (
         check_two_steps,
-        lambda T, O_, R, g, a, f: R[:, a] + g * ((T[a] @ O_[a]) * R[:, f]).sum(1),
+        lambda T_a, O_a, R, g, a, f: R[:, a] + g * ((T_a @ O_a) * R[:, f]).sum(1),
         "for the state at the start",
     ),
     (
         check_two_steps,
-        lambda T, O_, R, g, a, f: R[:, a] + g * T[a] @ R[:, f].mean(1),
+        lambda T_a, O_a, R, g, a, f: R[:, a] + g * T_a @ R[:, f].mean(1),
         "all observations alike",
     ),
     (
         check_two_steps,
-        lambda T, O_, R, g, a, f: R[:, a] + g * T[a] @ R[:, f].sum(1),
+        lambda T_a, O_a, R, g, a, f: R[:, a] + g * T_a @ R[:, f].sum(1),
         "all observations alike",
     ),
     (
         check_two_steps,
-        lambda T, O_, R, g, a, f: R[:, a] + g * T[a] @ R.max(axis=1),
+        lambda T_a, O_a, R, g, a, f: R[:, a] + g * T_a @ R.max(axis=1),
         "the plan says",
     ),
     (check_two_steps, lambda *given: two_steps(*given).sum(), "shape"),
@@ -141,8 +149,8 @@ WRONG = [
 ]
 
 
-def two_steps_free(T, O_, R, gamma, a, after):
-    return R[:, a] + gamma * T[a] @ (O_[a] * R[:, after]).sum(axis=1)
+def two_steps_free(T_a, O_a, R, gamma, a, after):
+    return R[:, a] + gamma * T_a @ (O_a * R[:, after]).sum(axis=1)
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -19,14 +19,14 @@ LED = "Right: where the lead is above 0 the belief is a witness, and the plan is
 
 
 def check_two_steps(two_steps: Callable[..., Any], rng: Rng = None) -> str:
-    """Check a student's ``two_steps(T, O, R, gamma, a, after)``: the vector of a policy tree.
+    """Check a student's ``two_steps(T_a, O_a, R, gamma, a, after)``: the vector of a policy tree.
 
     Parameters
     ----------
     two_steps : callable
-        Takes a model, ``T`` (A, S, S), ``O`` (A, S, Z), ``R`` (S, A) and ``gamma``, a first action
-        and the action after each observation, shape (Z,); returns what the plan earns from each
-        state, shape (S,).
+        Takes the transitions of the first action, shape (S, S), and its observations, shape (S, Z),
+        the rewards, shape (S, A), the discount, the first action, and the action after each
+        observation, shape (Z,); returns what the plan earns from each state, shape (S,).
     rng : numpy.random.Generator or int, optional
         Where the random models come from.
 
@@ -46,7 +46,7 @@ def check_two_steps(two_steps: Callable[..., Any], rng: Rng = None) -> str:
 
     Examples
     --------
-    >>> check_two_steps(lambda T, O, R, gamma, a, after: R[:, a])
+    >>> check_two_steps(lambda T_a, O_a, R, gamma, a, after: R[:, a])
     Traceback (most recent call last):
     arkaq_edu.exercises._ask.ExerciseError: that is the first action's reward alone: the plan has \
 a second step
@@ -54,11 +54,11 @@ a second step
     rng = np.random.default_rng(rng)
     cases = []
     for S, A, Z in rng.integers([2, 2, 2], [5, 4, 5], (20, 3)).tolist():
-        T, O_ = rng.dirichlet(np.ones(S), (A, S)), rng.dirichlet(np.ones(Z), (A, S))
+        T_a, O_a = rng.dirichlet(np.ones(S), S), rng.dirichlet(np.ones(Z), S)
         after = rng.integers(A, size=Z)
         after[0] = (after[1] + 1) % A  # otherwise it would not matter what is observed
         R, gamma = rng.uniform(-5, 5, (S, A)), float(rng.uniform(0.5, 0.95))
-        cases.append((T, O_, R, gamma, int(rng.integers(A)), after))
+        cases.append((T_a, O_a, R, gamma, int(rng.integers(A)), after))
     judge("two_steps", two_steps, cases, _two_steps, WRONG_TWO_STEPS)
     return VALUED
 
@@ -154,56 +154,56 @@ the plan must beat the best of them
     return LED
 
 
-def _two_steps(T: Floats, O_: Floats, R: Floats, gamma: float, a: int, after: Any) -> Floats:
-    return R[:, a] + gamma * T[a] @ (O_[a] * R[:, after]).sum(axis=1)
+def _two_steps(T_a: Floats, O_a: Floats, R: Floats, gamma: float, a: int, after: Any) -> Floats:
+    return R[:, a] + gamma * T_a @ (O_a * R[:, after]).sum(axis=1)
 
 
 # What is often done instead, and what to say of it.
 WRONG_TWO_STEPS: list[Rule] = [
     (
-        lambda T, O_, R, gamma, a, after: R[:, a],
+        lambda T_a, O_a, R, gamma, a, after: R[:, a],
         "that is the first action's reward alone: the plan has a second step",
     ),
     (
-        lambda T, O_, R, gamma, a, after: gamma * T[a] @ (O_[a] * R[:, after]).sum(axis=1),
+        lambda T_a, O_a, R, gamma, a, after: gamma * T_a @ (O_a * R[:, after]).sum(axis=1),
         "that is what the second step earns: the first action's reward is missing",
     ),
     (
-        lambda T, O_, R, gamma, a, after: _two_steps(T, O_, R, 1.0, a, after),
+        lambda T_a, O_a, R, gamma, a, after: _two_steps(T_a, O_a, R, 1.0, a, after),
         "all is there but the discount: what is earned later counts gamma of what is earned now",
     ),
     (
-        lambda T, O_, R, gamma, a, after: gamma * _two_steps(T, O_, R, 1.0, a, after),
+        lambda T_a, O_a, R, gamma, a, after: gamma * _two_steps(T_a, O_a, R, 1.0, a, after),
         "only what comes later is discounted, not the first reward",
     ),
     (
-        lambda T, O_, R, gamma, a, after: R[:, a] + gamma * (O_[a] * R[:, after]).sum(axis=1),
+        lambda T_a, O_a, R, gamma, a, after: R[:, a] + gamma * (O_a * R[:, after]).sum(axis=1),
         "the state has not moved: T says where the first action leads, and there the rest begins",
     ),
     (
-        lambda T, O_, R, gamma, a, after: (
-            R[:, a] + gamma * T[a].T @ (O_[a] * R[:, after]).sum(axis=1)
+        lambda T_a, O_a, R, gamma, a, after: (
+            R[:, a] + gamma * T_a.T @ (O_a * R[:, after]).sum(axis=1)
         ),
-        "you go backwards through T: T[a, s, t] leads from s to t, and the sum runs over t",
+        "you go backwards through T: T_a[s, t] leads from s to t, and the sum runs over t",
     ),
     (
-        lambda T, O_, R, gamma, a, after: R[:, a] + gamma * (O_[a] * (T[a] @ R[:, after])).sum(1),
+        lambda T_a, O_a, R, gamma, a, after: R[:, a] + gamma * (O_a * (T_a @ R[:, after])).sum(1),
         "you observe before the state has moved: O is for the state that the action has led to",
     ),
     (
-        lambda T, O_, R, gamma, a, after: R[:, a] + gamma * ((T[a] @ O_[a]) * R[:, after]).sum(1),
+        lambda T_a, O_a, R, gamma, a, after: R[:, a] + gamma * ((T_a @ O_a) * R[:, after]).sum(1),
         "the second reward is for the state at the start: by then the state has moved",
     ),
     (
-        lambda T, O_, R, gamma, a, after: R[:, a] + gamma * T[a] @ R[:, after].mean(axis=1),
+        lambda T_a, O_a, R, gamma, a, after: R[:, a] + gamma * T_a @ R[:, after].mean(axis=1),
         "you treat all observations alike: weigh each branch by how likely it is, which O says",
     ),
     (
-        lambda T, O_, R, gamma, a, after: R[:, a] + gamma * T[a] @ R[:, after].sum(axis=1),
+        lambda T_a, O_a, R, gamma, a, after: R[:, a] + gamma * T_a @ R[:, after].sum(axis=1),
         "you treat all observations alike: weigh each branch by how likely it is, which O says",
     ),
     (
-        lambda T, O_, R, gamma, a, after: R[:, a] + gamma * T[a] @ R.max(axis=1),
+        lambda T_a, O_a, R, gamma, a, after: R[:, a] + gamma * T_a @ R.max(axis=1),
         "you take the best second action in each state: the plan says which one is taken, and the "
         "robot does not see the state",
     ),

@@ -842,7 +842,8 @@ def _arc(ax: Axes, start: float, end: float) -> FancyArrowPatch:
     way = float(np.sign(end - start))
     arrow = FancyArrowPatch(
         (start + 0.2 * way, 0.3 * way), (end - 0.3 * way, 0.3 * way),
-        connectionstyle="arc3,rad=-0.45", arrowstyle="-|>", mutation_scale=12, color=style.INK, linewidth=1.1,
+        connectionstyle="arc3,rad=-0.45", arrowstyle="-|>", mutation_scale=12,
+        color=style.INK, linewidth=1.1,
     )  # fmt: skip
     ax.add_patch(arrow)
     return arrow

@@ -239,13 +239,7 @@ def bowl_explorer() -> Explorer:
         2, min=HORIZONS[0], max=HORIZONS[-1], description="steps to go", **_SLIDER
     )
     azimuth = ipywidgets.FloatSlider(
-        -14,
-        min=-180,
-        max=180,
-        step=2,
-        description="turn (degrees)",
-        readout_format=".0f",
-        **_SLIDER,
+        46, min=-180, max=180, step=2, description="turn (degrees)", readout_format=".0f", **_SLIDER
     )
     elevation = ipywidgets.FloatSlider(
         38, min=0, max=90, step=2, description="eye (degrees up)", readout_format=".0f", **_SLIDER
