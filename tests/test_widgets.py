@@ -18,7 +18,7 @@ from stand_in import triangle_stream
 import arkaq_edu as ae
 from arkaq_edu.figures import segmentation
 from arkaq_edu.widgets import Buttons, CanvasView, Drag, Explorer, vigilance, vigilance_explorer
-from arkaq_edu.widgets.scene import Cells, Line, Panel, Points, Scene, Text
+from arkaq_edu.widgets.scene import Cells, Line, Panel, Picture, Points, Scene, Text
 
 PATTERNS = triangle_stream(2000)
 
@@ -197,9 +197,29 @@ def test_the_canvas_is_sent_every_number(explored):
 
 def test_every_layer_has_a_painter_in_the_browser():
     script = Path(vigilance.__file__).with_name("canvas.js").read_text()
-    for layer in (Cells, Points, Line, Text):
+    for layer in (Cells, Points, Line, Text, Picture):
         assert f"\n  {layer.kind}(ctx, at, layer, numbers) {{" in script
     assert "http" not in script and "import " not in script, "it has to work offline"
+
+
+def test_a_picture_keeps_every_pixel_on_both_its_ways():
+    pixels = np.random.default_rng(0).integers(0, 256, (3, 5, 3), dtype=np.uint8)
+    pixels[0, 0] = (1, 0, 128)  # 1, 0, 128, 255 is a NaN to a float, and has to stay this one
+    layers = [Points([1.0], [1.0]), Picture(pixels, (2.0, 7.0, 1.0, 4.0), smooth=False)]
+    panel = Panel("", "", (0, 10), (0, 5), layers, bare=True)
+    view = CanvasView()
+    view.show(Scene("pixels", [panel]))
+    sent = view.scene["panels"][0]["layers"][1]
+    assert (sent["columns"], sent["smooth"]) == (5, False)
+    assert list(sent["within"]) == [2.0, 7.0, 1.0, 4.0]
+    found = np.frombuffer(view.numbers, np.uint8)[4 * sent["start"] :].reshape(3, 5, 4)
+    assert len(found.tobytes()) == 4 * sent["length"]
+    assert (found[..., :3] == pixels).all() and (found[..., 3] == 255).all()
+    ax = Figure().subplots()
+    panel.paint(ax)
+    (image,) = ax.images
+    assert (image.get_array() == pixels).all() and image.get_extent() == [2.0, 7.0, 1.0, 4.0]
+    assert (ax.get_xlim(), ax.get_ylim()) == ((0, 10), (0, 5)) and ax.get_aspect() == 1.0
 
 
 def test_a_picture_travels_in_one_message(explorer, monkeypatch):

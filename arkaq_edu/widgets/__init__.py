@@ -8,6 +8,7 @@ from .belief import belief_explorer
 from .explorer import Buttons, CanvasView, Drag, Explorer
 from .kalman import kalman_explorer
 from .learning import bandit_explorer, horizon_explorer
+from .panel import control_panel
 from .planning import planning_explorer, q_learning_explorer
 from .pomdp import bowl_explorer, value_explorer
 from .resonance import letters_explorer, resonance_explorer
@@ -21,6 +22,7 @@ __all__ = [
     "bandit_explorer",
     "belief_explorer",
     "bowl_explorer",
+    "control_panel",
     "horizon_explorer",
     "kalman_explorer",
     "letters_explorer",

@@ -65,6 +65,18 @@ const LAYERS = {
     ctx.textBaseline = "middle";
     ctx.fillText(layer.text, ...at(numbers[0], numbers[1]));
   },
+
+  picture(ctx, at, layer, numbers) {
+    const { buffer, byteOffset, byteLength } = numbers; // four bytes a pixel, no floats
+    const pixels = new ImageData(new Uint8ClampedArray(buffer, byteOffset, byteLength), layer.columns);
+    const sheet = new OffscreenCanvas(pixels.width, pixels.height);
+    sheet.getContext("2d").putImageData(pixels, 0, 0);
+    const [left, right, bottom, top] = layer.within;
+    const [x0, y0] = at(left, top);
+    const [x1, y1] = at(right, bottom);
+    ctx.imageSmoothingEnabled = layer.smooth;
+    ctx.drawImage(sheet, x0, y0, x1 - x0, y1 - y0);
+  },
 };
 
 // The way from a point of a panel's axes to a pixel of its box, and back.

@@ -146,7 +146,34 @@ class Text:
         ax.text(self.x, self.y, self.text, color=self.color, va="center", ha=self.align, fontsize=9)
 
 
-Layer = Cells | Points | Line | Text
+@dataclass(frozen=True)
+class Picture:
+    """Coloured pixels, shape (rows, columns, 3), the first row on top, on a window of the panel.
+
+    `within` is that window: left, right, bottom, top, in the units of the axes. Without `smooth`
+    every pixel stays a square of one colour, however large it is drawn.
+    """
+
+    kind: ClassVar[str] = "picture"
+    pixels: NDArray[np.uint8]
+    within: tuple[float, float, float, float]
+    smooth: bool = True
+
+    def look(self) -> dict[str, Any]:
+        """Return all but the numbers."""
+        return {"columns": self.pixels.shape[1], "within": self.within, "smooth": self.smooth}
+
+    def numbers(self) -> NDArray[np.float32]:
+        """Return red, green, blue and 255 of each pixel: four bytes, as many as a float32 has."""
+        return np.pad(self.pixels, ((0, 0), (0, 0), (0, 1)), constant_values=255).view("f4").ravel()
+
+    def paint(self, ax: Axes) -> None:
+        """Draw with matplotlib."""
+        how = "antialiased" if self.smooth else "nearest"
+        ax.imshow(self.pixels, extent=self.within, aspect=ax.get_aspect(), interpolation=how)
+
+
+Layer = Cells | Points | Line | Text | Picture
 
 
 @dataclass(frozen=True)
@@ -159,7 +186,7 @@ class Panel:
         What runs along the axes, with its unit.
     xlim, ylim : tuple of two float
         Ends of the axes; the first may be the greater.
-    layers : sequence of Cells, Points, Line or Text
+    layers : sequence of Cells, Points, Line, Text or Picture
         What is drawn.
     log : str
         The axes that are logarithmic: "x", "y" or "xy".
