@@ -8,6 +8,7 @@ from ._ask import ExerciseError
 from .approach import check_backup, check_boltzmann, check_reward
 from .art import check_choose, check_match, check_norm_r
 from .belief import check_chances, check_correct, check_expected_reward, check_predict
+from .field import check_ball, check_chance, check_pose
 from .kalman import check_combine, check_nis, check_turn
 from .learning import check_discounted_sum, check_epsilon_greedy, check_finite_sum, check_regret
 from .mdp import check_bellman, check_greedy, check_rate, check_td
@@ -17,9 +18,11 @@ from .segmentation import check_nearest, check_present, check_scale
 __all__ = [
     "ExerciseError",
     "check_backup",
+    "check_ball",
     "check_bellman",
     "check_best",
     "check_boltzmann",
+    "check_chance",
     "check_chances",
     "check_choose",
     "check_combine",
@@ -34,6 +37,7 @@ __all__ = [
     "check_nearest",
     "check_nis",
     "check_norm_r",
+    "check_pose",
     "check_predict",
     "check_present",
     "check_rate",

@@ -9,7 +9,8 @@ __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
     submodules=[
         "animation", "art", "automata", "belief", "diagram", "distance", "field", "gallery",
-        "kalman", "learning", "mdp", "policy", "pomdp", "segmentation", "style", "trajectories",
+        "kalman", "learning", "mdp", "policy", "pomdp", "scenes", "segmentation", "style",
+        "trajectories",
     ],
     submod_attrs={
         "animation": ["MovingWalk", "animate_walk", "save_walk"],

@@ -25,6 +25,7 @@ from . import (
     mdp,
     policy,
     pomdp,
+    scenes,
     segmentation,
     trajectories,
 )
@@ -36,6 +37,7 @@ _ROOMS = (
     kalman,
     distance,
     field,
+    scenes,
     automata,
     segmentation,
     policy,

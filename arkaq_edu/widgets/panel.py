@@ -126,7 +126,8 @@ class Drive:
         self.world.reset(ROBOT, BALL)
         self.deeds: tuple[Deed, ...] = ()
         self.head, self.told = 0.0, ""
-        self.trail, self.ball_trail = [ROBOT[:2]], []
+        self.trail: list[tuple[float, float]] = [ROBOT[:2]]
+        self.ball_trail: list[tuple[float, float]] = []
         self._look()
 
     def do(self, deeds: Sequence[Deed]) -> None:
@@ -245,7 +246,7 @@ class Drive:
         words = f"x {x:,.0f} mm, y {y:,.0f} mm, heading {heading:+.2f} rad, {self.world.time:.1f} s"
         layers: list[Layer] = [
             Picture(self.above, EXTENT),
-            Line(*way.T, "white", 2.0, dashed=True),
+            Line(way[:, 0], way[:, 1], "white", 2.0, dashed=True),
             Points(way[-1:, 0], way[-1:, 1], 3.5, "white"),
             Text(-3000, 2170, f"from above; dashed: {_AHEAD} such steps without a drift"),
             Text(-3000, -2170, _proper(words), style.QUIET),
