@@ -138,7 +138,7 @@ def test_only_the_belief_moves_with_the_belief(explorer):
 def test_the_bowl_states_its_planes_and_its_heights(bowl, horizon):
     bowl.controls["horizon"].value = horizon
     V = solve_pomdp(THREE, horizon)
-    wanted = rf"{len(V)} planes; ([\d.]+) in the middle, ([\d.]+) at the corners"
+    wanted = rf"{len(V)} planes, worth ([\d.]+) in the middle, ([\d.]+) at the corners"
     middle, corner = map(float, re.search(wanted, repr(bowl)).groups())
     assert middle == pytest.approx(V.value([1 / 3] * 3), abs=0.006)
     assert V.value(np.eye(3)) == pytest.approx(corner, abs=0.006), "all corners alike"
@@ -159,7 +159,7 @@ def test_the_bowl_is_turned_by_drags_and_keys(bowl):
     pull(bowl, 1, (0.0, 0.0), (0.5, 0.0), "begin")
     assert bowl.controls["view"].value == (30, 30), "the near side follows the pointer"
     pull(bowl, 1, (0.0, 0.0), (0.5, -0.5), "end")
-    assert bowl.controls["view"].value == (30, 60) and "seen from 30° and 60° up" in repr(bowl)
+    assert bowl.controls["view"].value == (30, 60) and "seen from 30°, 60° up" in repr(bowl)
     after = bowl.drawn.panels
     assert not np.allclose(before[0].layers[0].polygons[0], after[0].layers[0].polygons[0])
     same = [x for x in zip(before[1].layers, after[1].layers, strict=True)]

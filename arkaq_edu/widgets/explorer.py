@@ -174,7 +174,7 @@ class Drag(ipywidgets.VBox):
 
     def _dragged(self, change: Any) -> None:
         drag = change["new"]
-        if drag["panel"] != self.panel:
+        if drag.get("panel") != self.panel:
             return
         if drag["number"] != self._number:
             self._number, self._start = drag["number"], self._place()

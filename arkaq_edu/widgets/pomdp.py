@@ -93,7 +93,7 @@ def draw_value(horizon: int, belief: float) -> Scene:
         f"worth {value:.3f}, begin with {pomdp.actions[tree.action]}; "
         f"{len(V)} of {how_many(V):,} plans are needed"
     )
-    return Scene(fact, [_surface(V, belief, value), _plan(tree)])
+    return Scene(fact, [_surface(horizon, belief, value), _plan(tree)])
 
 
 def how_many(V: ValueFunction) -> int:
@@ -169,12 +169,8 @@ def _pieces(
     return Line(x.ravel(), y.ravel(), color, width)
 
 
-def _surface(V: ValueFunction, p: float, value: float) -> Panel:
-    depth = 1
-    rest = V.shorter
-    while rest is not None:
-        depth, rest = depth + 1, rest.shorter
-    still, (low, high) = _still(depth)
+def _surface(horizon: int, p: float, value: float) -> Panel:
+    still, (low, high) = _still(horizon)
     layers = [
         *still,
         Line([p, p], [low, value], style.INK, 1.0, dashed=True),
@@ -233,7 +229,7 @@ def bowl_explorer() -> Explorer:
     --------
     >>> explorer = bowl_explorer()
     >>> explorer
-    2 steps to go, seen from 46° and 38° up: 7 planes; 1.80 in the middle, 5.00 at the corners
+    2 steps to go: 7 planes, worth 1.80 in the middle, 5.00 at the corners; seen from 46°, 38° up
     """
     horizon = ipywidgets.IntSlider(
         2, min=HORIZONS[0], max=HORIZONS[-1], description="steps to go", **_SLIDER
@@ -265,9 +261,9 @@ def draw_bowl(horizon: int, view: tuple[float, float]) -> Scene:
     azimuth, elevation = view
     known = V.alphas.max(axis=0).min()
     fact = (
-        f"{horizon} step{'' if horizon == 1 else 's'} to go, seen from {azimuth:.0f}° and "
-        f"{elevation:.0f}° up: {len(V)} planes; {V.value([1 / 3] * 3):.2f} in the middle, "
-        f"{known:.2f} at the corners"
+        f"{horizon} step{'' if horizon == 1 else 's'} to go: {len(V)} planes, worth "
+        f"{V.value([1 / 3] * 3):.2f} in the middle, {known:.2f} at the corners; "
+        f"seen from {azimuth:.0f}°, {elevation:.0f}° up"
     )
     names = [pomdp.actions[a] for a in V.actions]
     seen = bowl(V, azimuth, elevation)
