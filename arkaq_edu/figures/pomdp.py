@@ -63,7 +63,7 @@ PLANS = {"a": (0, (0, 1, 1)), "b": (1, (0, 1, 1)), "c": (0, (0, 0, 1)), "d": (0,
 
 #: Where the corners of the triangle of beliefs stand: three states, all as far from each other.
 CORNERS = np.array([[-np.sqrt(3) / 2, -0.5], [0.0, 1.0], [np.sqrt(3) / 2, -0.5]])
-_RISE, _DROP = 0.8, 0.75  # of the bowl, and from its lowest point to the floor
+_RISE, _DROP = 0.8, 0.85  # of the bowl, and from its lowest point to the floor
 
 
 class SurfacePlot(NamedTuple):
@@ -410,7 +410,7 @@ def figure_2_11(
     )
     if ax is None:
         _, ax = plt.subplots(figsize=(6.4, 5.4), layout="constrained")
-    ax = blank(ax, title, (-1.2, 1.2), (-1.45, 1.3))
+    ax = blank(ax, title, (-1.2, 1.2), (-1.55, 1.35))
     colors = [COLORS[pomdp.actions[V.actions[k]]] for k in seen.plans]
     shadows = style.cells(seen.shadows, [to_hex(paler(color, 0.55)) for color in colors], ax)
     for (foot, top), name in zip(seen.corners, pomdp.states, strict=True):
@@ -471,7 +471,7 @@ def bowl(V: ValueFunction, azimuth: float, elevation: float) -> Bowl:
     def seen(beliefs: Floats, values: Floats) -> Floats:
         place = beliefs @ CORNERS
         across = place @ [np.cos(turn), -np.sin(turn)]
-        height = (values - low) * scale - _RISE / 2 + 0.25
+        height = (values - low) * scale - _RISE / 2 + 0.3
         return np.column_stack([across, place @ away * np.sin(up) + height * np.cos(up)])
 
     floor = low - _DROP / scale

@@ -56,13 +56,13 @@ def value_explorer() -> Explorer:
     --------
     >>> explorer = value_explorer()
     >>> explorer
-    1 step to go, p(s1) = 0.25: worth 1.125, begin with a2; 2 of 2 plans are needed
-    >>> explorer.controls["horizon"].value = 3
-    >>> explorer
     3 steps to go, p(s1) = 0.25: worth 2.974, begin with a2; 7 of 128 plans are needed
+    >>> explorer.controls["horizon"].value = 1
+    >>> explorer
+    1 step to go, p(s1) = 0.25: worth 1.125, begin with a2; 2 of 2 plans are needed
     """
     horizon = ipywidgets.IntSlider(
-        1, min=HORIZONS[0], max=HORIZONS[-1], description="steps to go", **_SLIDER
+        3, min=HORIZONS[0], max=HORIZONS[-1], description="steps to go", **_SLIDER
     )
     belief = ipywidgets.FloatSlider(
         0.25, min=0, max=1, step=0.01, description="belief p(s1)", **_SLIDER
@@ -268,7 +268,7 @@ def draw_bowl(horizon: int, view: tuple[float, float]) -> Scene:
     names = [pomdp.actions[a] for a in V.actions]
     seen = bowl(V, azimuth, elevation)
     colors = [COLORS[names[k]] for k in seen.plans]
-    window = (-1.3, 1.3, -1.3, 1.3)
+    window = (-1.3, 1.3, -1.4, 1.4)
     layers: list[Layer] = [
         _cells(seen.shadows, [to_hex(paler(color, 0.55)) for color in colors], window),
         *(Line(post[:, 0], post[:, 1], style.QUIET, 1.0, dashed=True) for post in seen.corners),
