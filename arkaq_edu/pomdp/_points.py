@@ -8,36 +8,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from arkaq_edu._compiled import kernel
+from arkaq_edu.pomdp.graph import follow, steps_and_rewards
 from arkaq_edu.pomdp.model import POMDP
 
 Floats = NDArray[np.floating]
 Ints = NDArray[np.int64]
-
-
-@kernel
-def follow(steps, rewards, actions, branches, enough, values):
-    """Turn guessed values of a policy graph's nodes into its own, until they change no more.
-
-    `steps[a, z, s, t]` is gamma T(s, a, t) O(t, a, z) and `rewards[a, s]` is R(s, a).
-    """
-    N, S = values.shape
-    change = np.inf
-    for _ in range(1000):
-        change = 0.0
-        for n in range(N):
-            a = actions[n]
-            for s in range(S):
-                total = rewards[a, s]
-                for z in range(branches.shape[1]):
-                    rest = branches[n, z]
-                    for t in range(S):
-                        total += steps[a, z, s, t] * values[rest, t]
-                change = max(change, abs(total - values[n, s]))
-                values[n, s] = total
-        if change <= enough:
-            break
-    return change
 
 
 def point_backup(pomdp: POMDP, alphas: Floats, points: Floats) -> tuple[Floats, Ints, Ints]:
@@ -61,17 +36,17 @@ def improve(pomdp: POMDP, alphas: Floats, points: Floats, enough: float) -> Floa
     Policy iteration: choose at each point, follow the choices, until no point rises by more than
     `enough`. What would be worse at its point is not taken, so that the heights only rise.
     """
-    steps = pomdp.gamma * pomdp.T[:, np.newaxis] * pomdp.O.transpose(0, 2, 1)[:, :, np.newaxis]
-    rewards = np.ascontiguousarray(pomdp.R.T)
+    steps, rewards = steps_and_rewards(pomdp)
     # A little of every state, so that a choice is also good where it does not matter at the point.
     points = (1 - 1e-6) * points + 1e-6 / pomdp.n_states
     alphas = alphas[(points @ alphas.T).argmax(axis=1)]
     heights = (points * alphas).sum(axis=1)
     rows = np.arange(len(points))
+    enough = max(enough, 1e-14 * np.abs(alphas).max())  # no rise by rounding alone
     while True:
         once, actions, branches = point_backup(pomdp, alphas, points)
         always = once.copy()
-        follow(steps, rewards, actions, branches, enough / 10, always)
+        follow(steps, rewards, actions, branches, enough / 10, 1000, always)
         improved = np.concatenate([once, always])
         now = points @ improved.T
         best = now.argmax(axis=1)

@@ -19,8 +19,8 @@ import numpy as np
 
 from arkaq_edu._compiled import kernel
 
-# Numbers of this size are zero: the vectors are scaled to about one by who calls.
-ZERO = 1e-12
+# Numbers of this size are zero: who calls has scaled the vectors' differences to about one.
+ZERO = 1e-13
 
 
 @kernel
@@ -150,6 +150,29 @@ def gain(w, vectors, n, low, high, b, mixture, basis, inverse, solution, column)
                 height -= mixture[basis[i]] * vectors[basis[i], s]
         bound = max(bound, height)
     return bound
+
+
+@kernel
+def furthest(A, C, low, b, mixture):
+    """Return an upper bound on max_i max_b min_k b . (A[i] - C[k]), or `low` where that is larger.
+
+    Leaves the belief where it is, and the mixture of the C that proves it, in `b` and `mixture`.
+    """
+    S, K = A.shape[1], C.shape[0]
+    w, belief, weights = np.empty(S), np.empty(S), np.empty(K)
+    basis, inverse = np.empty(S + 1, np.int64), np.empty((S + 1, S + 1))
+    solution, column = np.empty(S + 1), np.empty(S + 1)
+    for i in range(A.shape[0]):
+        for s in range(S):
+            w[s] = A[i, s]
+        bound = gain(w, C, K, low, np.inf, belief, weights, basis, inverse, solution, column)
+        if bound > low:
+            low = bound
+            for s in range(S):
+                b[s] = belief[s]
+            for k in range(K):
+                mixture[k] = weights[k]
+    return low
 
 
 @kernel

@@ -5,8 +5,41 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from arkaq_edu._compiled import kernel
 from arkaq_edu.mdp._indices import indices
 from arkaq_edu.pomdp.model import POMDP
+
+# Up to this size a graph's equations are solved at once, beyond it by repeating them.
+LARGE = 1000
+
+
+@kernel
+def follow(steps, rewards, actions, branches, enough, most, values):
+    """Repeat the equations of a policy graph until its values change by no more than `enough`.
+
+    `steps[a, z, s, t]` is gamma T(s, a, t) O(t, a, z) and `rewards[a, s]` is R(s, a).
+    """
+    N, S = values.shape
+    for _ in range(most):
+        change = 0.0
+        for n in range(N):
+            a = actions[n]
+            for s in range(S):
+                total = rewards[a, s]
+                for z in range(branches.shape[1]):
+                    rest = branches[n, z]
+                    for t in range(S):
+                        total += steps[a, z, s, t] * values[rest, t]
+                change = max(change, abs(total - values[n, s]))
+                values[n, s] = total
+        if change <= enough:
+            break
+
+
+def steps_and_rewards(pomdp: POMDP) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
+    """Return gamma T(s, a, t) O(t, a, z) at [a, z, s, t], and R(s, a) at [a, s]."""
+    seen = pomdp.O.transpose(0, 2, 1)[:, :, np.newaxis]
+    return pomdp.gamma * pomdp.T[:, np.newaxis] * seen, np.ascontiguousarray(pomdp.R.T)
 
 
 class PolicyGraph:
@@ -70,7 +103,7 @@ class PolicyGraph:
         ndarray, shape (K, S)
             The solution of alpha_k(s) = R(s, a) + gamma sum_t T(s, a, t) sum_z O(t, a, z)
             alpha_k'(t), where a is the action of node k and k' the node that follows z: equation
-            2.19 without an end.
+            2.19 without an end. Of large graphs the equations are repeated until nothing changes.
 
         Raises
         ------
@@ -83,11 +116,15 @@ class PolicyGraph:
             raise ValueError(
                 f"branches must have shape ({K}, {pomdp.n_observations}), got {(K, Z)}"
             )
-        S = pomdp.n_states
+        S, gamma = pomdp.n_states, pomdp.gamma
+        steps, rewards = steps_and_rewards(pomdp)
+        if K * S > LARGE:
+            values = np.zeros((K, S))
+            sweeps = 10 + int(40 / -np.log(max(gamma, 1e-9)))
+            follow(steps, rewards, self.actions, self.branches, 0.0, sweeps, values)
+            return values
         moves = np.zeros((K, S, K, S))
         for z in range(Z):
-            step = pomdp.T[self.actions] * pomdp.O[self.actions, np.newaxis, :, z]
-            moves[np.arange(K), :, self.branches[:, z], :] += step
-        rewards = pomdp.R[:, self.actions].T.ravel()
-        system = np.eye(K * S) - pomdp.gamma * moves.reshape(K * S, K * S)
-        return np.linalg.solve(system, rewards).reshape(K, S)
+            moves[np.arange(K), :, self.branches[:, z], :] += steps[self.actions, z]
+        system = np.eye(K * S) - moves.reshape(K * S, K * S)
+        return np.linalg.solve(system, rewards[self.actions].ravel()).reshape(K, S)

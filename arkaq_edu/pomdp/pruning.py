@@ -11,6 +11,10 @@ from arkaq_edu._checks import array, number
 from arkaq_edu.pomdp import _simplex
 
 Floats = NDArray[np.floating]
+Ints = NDArray[np.int64]
+
+# What a vector adds is told from rounding above this part of what the vectors differ by.
+ROUNDING = 1e-12
 
 
 def prune(alphas: ArrayLike, tol: float = 1e-9) -> NDArray[np.intp]:
@@ -58,13 +62,13 @@ def prune(alphas: ArrayLike, tol: float = 1e-9) -> NDArray[np.intp]:
     A = array("alphas", alphas, (None, None))
     if not A.size:
         raise ValueError(f"alphas must have at least one row and one column, got {A.shape}")
-    pairs, _ = needed_sums(A, np.zeros((1, A.shape[1])), number("tol", tol, 0))
+    pairs, _, _ = needed_sums(A, np.zeros((1, A.shape[1])), number("tol", tol, 0))
     return np.sort(pairs[:, 0])
 
 
 def needed_sums(
     A: Floats, B: Floats, tol: float, seeds: Floats | None = None
-) -> tuple[NDArray[np.int64], Floats]:
+) -> tuple[Ints, Floats, float]:
     """Return the pairs (i, j) whose sums A[i] + B[j] form the upper surface of all sums.
 
     Parameters
@@ -72,7 +76,7 @@ def needed_sums(
     A, B : ndarray, shape (N, S) and (M, S)
         The vectors.
     tol : float
-        What is left out adds no more than this anywhere.
+        What is left out may add no more than this anywhere.
     seeds : ndarray, shape (P, S), optional
         Beliefs where needed sums are likely to be found.
 
@@ -81,23 +85,25 @@ def needed_sums(
     pairs : ndarray of int, shape (K, 2)
     beliefs : ndarray, shape (K, S)
         A belief at which each is needed.
+    lost : float
+        What is left out adds no more than this: `tol`, or what rounding does not let be told.
     """
     S = A.shape[1]
     # In a state where all vectors agree nothing is decided, and only differences matter.
     A, B = A - A[0], B - B[0]
     decides = np.flatnonzero((A != 0).any(axis=0) | (B != 0).any(axis=0))
     if not len(decides):
-        return np.zeros((1, 2), np.int64), np.full((1, S), 1 / S)
+        return np.zeros((1, 2), np.int64), np.full((1, S), 1 / S), 0.0
     A, B = np.ascontiguousarray(A[:, decides]), np.ascontiguousarray(B[:, decides])
-    scale = np.abs(A).max() + np.abs(B).max()
+    scale = float(np.abs(A).max() + np.abs(B).max())
     A /= scale
     B /= scale
     points = np.eye(len(decides))
     if seeds is not None:
         inside = seeds[:, decides]
-        mass = inside.sum(axis=1, keepdims=True)
-        points = np.concatenate([points, (inside / np.where(mass > 0, mass, 1))[mass[:, 0] > 0]])
-    eps = max(tol / scale, 8 * _simplex.ZERO)
+        mass = inside.sum(axis=1)
+        points = np.concatenate([points, inside[mass > 0] / mass[mass > 0, np.newaxis]])
+    eps = max(tol / scale, ROUNDING)
     room = 2 * (len(A) + len(B)) + 64
     while True:
         pairs = np.empty((room, 2), np.int64)
@@ -110,7 +116,47 @@ def needed_sums(
         room *= 4
     witnesses = np.zeros((count, S))
     witnesses[:, decides] = beliefs[:count]
-    return pairs[:count], witnesses
+    return pairs[:count], witnesses, eps * scale
+
+
+def distance(A: Floats, C: Floats) -> tuple[float, Floats]:
+    """Return a bound on |max_i b . A[i] - max_j b . C[j]| over all beliefs b, and where it is met.
+
+    The difference of two upper surfaces is largest where, over i, max_b min_j b . (A[i] - C[j]) is:
+    a linear program for each i; and the same the other way round. The bound is that of their
+    duals, so that no belief is overlooked.
+    """
+    over, belief, _ = gain(A, C, low=0.0)
+    under, other, _ = gain(C, A, low=over)
+    return (under, other) if under > over else (over, belief)
+
+
+def gain(A: Floats, C: Floats, low: float = -np.inf) -> tuple[float, Floats, Floats]:
+    """Return what some vectors add to others where they add most: max_i max_b min_k b.(a_i - c_k).
+
+    Parameters
+    ----------
+    A, C : ndarray, shape (N, S) and (K, S)
+        The vectors, and the others.
+    low : float
+        No gain below this is looked for.
+
+    Returns
+    -------
+    gain : float
+        An upper bound, proved by the mixture, and the gain itself up to rounding; `low` where the
+        gain is no larger. Negative where the A lie below the upper surface of C everywhere.
+    belief : ndarray, shape (S,)
+        Where that is.
+    mixture : ndarray, shape (K,)
+        Weights that sum to 1: ``A[i] - mixture @ C`` is at most the gain in every state.
+    """
+    K, S = C.shape
+    A, C = A - C[0], C - C[0]
+    scale = float(max(np.abs(A).max(), np.abs(C).max(), np.finfo(float).tiny))
+    belief, mixture = np.full(S, 1 / S), np.zeros(K)
+    bound = _simplex.furthest(A / scale, C / scale, low / scale, belief, mixture)
+    return float(bound * scale), belief, mixture
 
 
 @dataclass(frozen=True)
@@ -198,45 +244,12 @@ def dominated(alphas: ArrayLike, tol: float = 1e-9) -> list[Domination]:
     for k in np.setdiff1d(np.arange(len(A)), needed):
         ahead = A - A[k]
         ahead[k] = -np.inf
-        alone = np.flatnonzero(ahead.min(axis=1) >= 0)
+        alone = np.flatnonzero(ahead.min(axis=1) >= -tol)
         if len(alone):  # the nearest of those above it everywhere
             by = alone[[ahead[alone].sum(axis=1).argmin()]]
             weights: Floats = np.ones(1)
         else:
-            _, _, mixture = gain(A[k], A[needed])
+            _, _, mixture = gain(A[[k]], A[needed])
             by, weights = needed[mixture > 0], mixture[mixture > 0]
         found.append(Domination(int(k), tuple(map(int, by)), weights, A[by] - A[k]))
     return found
-
-
-def gain(w: Floats, vectors: Floats, low: float = -np.inf) -> tuple[float, Floats, Floats]:
-    """Return what a vector adds to others where it adds most: max_b min_k b . (w - u_k).
-
-    Parameters
-    ----------
-    w : ndarray, shape (S,)
-        The vector.
-    vectors : ndarray, shape (K, S)
-        The others.
-    low : float
-        It is no use to know more once the gain is known to be at most this.
-
-    Returns
-    -------
-    gain : float
-        Negative where `w` is below the others' upper surface everywhere. An upper bound, certified
-        by the mixture; the gain itself up to rounding, if it is above `low`.
-    belief : ndarray, shape (S,)
-        Where that is.
-    mixture : ndarray, shape (K,)
-        Weights that sum to 1: ``w - mixture @ vectors`` is at most `gain` in every state.
-    """
-    K, S = vectors.shape
-    scale = max(float(np.abs(vectors - w).max()), np.finfo(float).tiny)
-    b, mixture = np.empty(S), np.empty(K)
-    others = np.ascontiguousarray((vectors - w) / scale)
-    _simplex.gain(
-        np.zeros(S), others, K, low / scale, np.inf, b, mixture,
-        np.empty(S + 1, np.int64), np.empty((S + 1, S + 1)), np.empty(S + 1), np.empty(S + 1),
-    )  # fmt: skip
-    return float((w - mixture @ vectors).max()), b, mixture

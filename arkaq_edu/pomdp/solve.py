@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -11,14 +13,11 @@ from arkaq_edu._checks import integer, number
 from arkaq_edu.pomdp._points import improve
 from arkaq_edu.pomdp.graph import PolicyGraph
 from arkaq_edu.pomdp.model import POMDP
-from arkaq_edu.pomdp.pruning import gain, needed_sums
+from arkaq_edu.pomdp.pruning import distance, needed_sums
 from arkaq_edu.pomdp.value import ValueFunction
 
 Floats = NDArray[np.floating]
 Ints = NDArray[np.int64]
-
-# What pruning may leave out, relative to the rewards, where nothing coarser is asked for.
-FINE = 1e-11
 
 
 class Backup(NamedTuple):
@@ -26,8 +25,9 @@ class Backup(NamedTuple):
 
     alphas: Floats
     actions: Ints
-    branches: Ints
-    beliefs: Floats
+    branches: Ints  # for each observation the row of V
+    beliefs: Floats  # where each vector is needed
+    lost: float  # what pruning may have left out
 
 
 def solve_pomdp(pomdp: POMDP, horizon: int | None = None, tol: float = 1e-6) -> ValueFunction:
@@ -94,11 +94,55 @@ def solve_pomdp(pomdp: POMDP, horizon: int | None = None, tol: float = 1e-6) -> 
     tol = number("tol", tol, 0, open_low=True)
     if horizon is None:
         return _endless(pomdp, tol)
-    V = _one_step(pomdp)
-    for _ in range(integer("horizon", horizon, 1) - 1):
-        step, lost = backup(pomdp, V.alphas, 0.0)
-        error = lost + pomdp.gamma * V.error
+    horizon = integer("horizon", horizon, 1)
+    alphas = np.ascontiguousarray(pomdp.R.T)
+    pairs, beliefs, lost = needed_sums(alphas, np.zeros((1, pomdp.n_states)), 0.0)
+    actions = np.sort(pairs[:, 0])
+    V = ValueFunction(alphas[actions], actions, np.empty((len(actions), 0), np.int64), None, lost)
+    for _ in range(horizon - 1):
+        step = backup(pomdp, V.alphas, 0.0, beliefs)
+        beliefs = step.beliefs
+        error = step.lost + pomdp.gamma * V.error
         V = ValueFunction(step.alphas, step.actions, step.branches, V, error)
+    return V
+
+
+def _endless(pomdp: POMDP, tol: float) -> ValueFunction:
+    """Iterate until the certified bound is within `tol`."""
+    gamma, corners = pomdp.gamma, np.eye(pomdp.n_states)
+    same = np.arange(pomdp.n_actions)
+    alphas = PolicyGraph(same, np.tile(same, (pomdp.n_observations, 1)).T).values(pomdp)
+    finest = tol * (1 - gamma) / 4
+    residual, beliefs = float(np.ptp(pomdp.R)), corners
+    while True:
+        # Pruning need not be finer than what the iteration still lacks.
+        coarse = max(residual / 20, finest)
+        step = backup(pomdp, alphas, coarse, beliefs)
+        residual, where = distance(step.alphas, alphas)
+        error = (gamma * residual + step.lost) / (1 - gamma)
+        rounding = max(step.lost, 1e-13 * np.abs(alphas).max())
+        in_vain = rounding > max(1.01 * coarse, residual, 2 * finest)
+        if error <= tol or in_vain:
+            break
+        beliefs = np.concatenate([step.beliefs, corners, where[np.newaxis]])
+        enough = max(residual, finest) * (1 - gamma) / 10
+        both = np.concatenate([step.alphas, improve(pomdp, step.alphas, beliefs, enough)])
+        pairs, _, _ = needed_sums(both, np.zeros((1, pomdp.n_states)), coarse / 10, beliefs)
+        alphas = both[np.sort(pairs[:, 0])]
+    # Where a plan went on with a vector of V, the graph goes on with the nearest of H V.
+    nearest = np.array([np.abs(step.alphas - alpha).max(axis=1).argmin() for alpha in alphas])
+    graph = PolicyGraph(step.actions, nearest[step.branches])
+    V = ValueFunction(step.alphas, graph.actions, graph.branches, None, error)
+    closed = ValueFunction(graph.values(pomdp), graph.actions, graph.branches)
+    closed_error = bellman_error(pomdp, closed) / (1 - gamma)
+    if closed_error <= max(tol, error):
+        V = replace(closed, error=closed_error)
+    if V.error > tol:
+        warnings.warn(
+            f"tol={tol:g} is finer than rounding lets be proved here: error={V.error:.2g}",
+            RuntimeWarning,
+            stacklevel=3,
+        )
     return V
 
 
@@ -131,110 +175,54 @@ def bellman_error(pomdp: POMDP, V: ValueFunction) -> float:
     >>> round(bellman_error(pomdp, V), 9)
     1.5
     """
-    step, lost = backup(pomdp, V.alphas, 0.0)
-    return float(distance(step.alphas, V.alphas)[0] + lost)
+    step = backup(pomdp, V.alphas, 0.0)
+    return distance(step.alphas, V.alphas)[0] + step.lost
 
 
-def distance(A: Floats, C: Floats) -> tuple[float, Floats]:
-    """Return a certified bound on |max_i b . A[i] - max_j b . C[j]|, and the belief where it is."""
-    largest, where = 0.0, np.full(A.shape[1], 1 / A.shape[1])
-    for over, under in ((A, C), (C, A)):
-        for w in over:
-            gained, belief, _ = gain(w, under, low=largest)
-            if gained > largest:
-                largest, where = gained, belief
-    return largest, where
+def backup(pomdp: POMDP, alphas: Floats, tol: float, beliefs: Floats | None = None) -> Backup:
+    """Return H V for the upper surface V of some vectors; pruning may leave out `tol` in all.
 
-
-def backup(
-    pomdp: POMDP, alphas: Floats, tol: float, seeds: Floats | None = None
-) -> tuple[Backup, float]:
-    """Return H V for the upper surface V of some vectors, up to `tol`, and what may be lost."""
-    scale = np.abs(pomdp.R).max() + pomdp.gamma * np.abs(alphas).max()
-    Z = pomdp.n_observations
+    `beliefs` are where needed vectors are likely to be found.
+    """
     # Each observation is pruned alone and joined to those before; then the actions.
-    prunings = 2 * Z
-    eps = max(tol / prunings, FINE * scale)
-    sets = []
+    eps = tol / (2 * pomdp.n_observations)
+    parts = []
     for a in range(pomdp.n_actions):
         # What vector k is worth before a, if z follows: gamma sum_t T(s, a, t) O(t, a, z) V_k(t).
         ahead = pomdp.gamma * (pomdp.O[a].T[:, np.newaxis] * alphas) @ pomdp.T[a].T
-        sets.append(_join(pomdp.R[:, a], ahead, eps, seeds))
-    everything = np.concatenate([s[0] for s in sets])
-    actions = np.repeat(np.arange(pomdp.n_actions), [len(s[0]) for s in sets])
-    branches = np.concatenate([s[1] for s in sets])
+        parts.append(_join(pomdp.R[:, a], ahead, eps, beliefs))
+    vectors = np.concatenate([part[0] for part in parts])
+    actions = np.repeat(np.arange(pomdp.n_actions), [len(part[0]) for part in parts])
+    branches = np.concatenate([part[1] for part in parts])
     zero = np.zeros((1, pomdp.n_states))
-    pairs, beliefs = needed_sums(everything, zero, eps, seeds)
+    pairs, where, lost = needed_sums(vectors, zero, eps, beliefs)
     order = pairs[:, 0].argsort()
     rows = pairs[order, 0]
-    step = Backup(everything[rows], actions[rows], branches[rows], beliefs[order])
-    return step, eps * prunings
+    lost += max(part[2] for part in parts)
+    return Backup(vectors[rows], actions[rows], branches[rows], where[order], lost)
 
 
-def _join(rewards: Floats, ahead: Floats, eps: float, seeds: Floats | None) -> tuple[Floats, Ints]:
-    """Return the needed sums of a vector for each observation, and which each took."""
+def _join(
+    rewards: Floats, ahead: Floats, eps: float, beliefs: Floats | None
+) -> tuple[Floats, Ints, float]:
+    """Return the needed sums of one vector for each observation, which they took, what is lost."""
     zero = np.zeros((1, len(rewards)))
+    total = 0.0
     parts = []
     for vectors in ahead:
-        rows = needed_sums(vectors, zero, eps, seeds)[0][:, 0]
-        parts.append((vectors[rows], rows))
-    # The smallest first, so that there are few sums for long.
-    order = sorted(range(len(parts)), key=lambda z: len(parts[z][1]))
+        pairs, _, lost = needed_sums(vectors, zero, eps, beliefs)
+        parts.append((vectors[pairs[:, 0]], pairs[:, 0]))
+        total += lost
     sums: Floats = rewards.reshape(1, -1)
     taken = np.zeros((1, len(parts)), np.int64)
-    for z in order:
+    # The smallest first, so that there are few sums for long.
+    for z in sorted(range(len(parts)), key=lambda z: len(parts[z][1])):
         vectors, rows = parts[z]
-        if len(rows) == 1 or len(sums) == 1:
+        if len(rows) == 1 or len(sums) == 1:  # nothing to choose: all are needed
             pairs = np.argwhere(np.ones((len(sums), len(rows))))
         else:
-            pairs = needed_sums(sums, vectors, eps, seeds)[0]
+            pairs, _, lost = needed_sums(sums, vectors, eps, beliefs)
+            total += lost
         sums, taken = sums[pairs[:, 0]] + vectors[pairs[:, 1]], taken[pairs[:, 0]]
         taken[:, z] = rows[pairs[:, 1]]
-    return sums, taken
-
-
-def _one_step(pomdp: POMDP) -> ValueFunction:
-    alphas = np.ascontiguousarray(pomdp.R.T)
-    pairs, _ = needed_sums(alphas, np.zeros((1, pomdp.n_states)), FINE * np.abs(alphas).max())
-    actions = np.sort(pairs[:, 0])
-    return ValueFunction(alphas[actions], actions, np.empty((len(actions), 0), np.int64))
-
-
-def _endless(pomdp: POMDP, tol: float) -> ValueFunction:
-    """Iterate until the certified bound is within `tol`."""
-    gamma, Z = pomdp.gamma, pomdp.n_observations
-    n, corners = np.arange(pomdp.n_actions), np.eye(pomdp.n_states)
-    alphas: Floats = PolicyGraph(n, np.repeat(n[:, np.newaxis], Z, axis=1)).values(pomdp)
-    wanted = tol * (1 - gamma)
-    residual, seeds = float(np.ptp(pomdp.R)), corners
-    while True:
-        # Pruning need not be finer than what the iteration still lacks.
-        coarse = max(wanted / 4, residual / 20)
-        step, lost = backup(pomdp, alphas, coarse, seeds)
-        residual, where = distance(step.alphas, alphas)
-        error = (gamma * residual + lost) / (1 - gamma)
-        if error <= tol:
-            break
-        seeds = np.concatenate([step.beliefs, corners, where[np.newaxis]])
-        better = improve(pomdp, step.alphas, seeds, max(residual, wanted) * (1 - gamma) / 10)
-        both = np.concatenate([step.alphas, better])
-        pairs, _ = needed_sums(both, np.zeros((1, pomdp.n_states)), coarse / 10, seeds)
-        alphas = both[np.sort(pairs[:, 0])]
-    closed = _close(pomdp, step, alphas, tol)
-    if closed is not None:
-        return closed
-    before = ValueFunction(alphas, np.full(len(alphas), -1), np.empty((len(alphas), 0), np.int64))
-    return ValueFunction(step.alphas, step.actions, step.branches, before, error)
-
-
-def _close(pomdp: POMDP, step: Backup, alphas: Floats, tol: float) -> ValueFunction | None:
-    """Return the value of the policy graph that H V and V make together, if it is good enough."""
-    # Where a plan goes on with vector j of V, the graph goes on with the nearest of H V.
-    nearest = np.array([np.abs(step.alphas - alpha).max(axis=1).argmin() for alpha in alphas])
-    graph = PolicyGraph(step.actions, nearest[step.branches])
-    if len(graph) * pomdp.n_states > 3000:
-        return None
-    V = ValueFunction(graph.values(pomdp), graph.actions, graph.branches)
-    again, lost = backup(pomdp, V.alphas, 0.0, step.beliefs)
-    error = (distance(again.alphas, V.alphas)[0] + lost) / (1 - pomdp.gamma)
-    return ValueFunction(V.alphas, V.actions, V.branches, None, error) if error <= tol else None
+    return sums, taken, total
