@@ -1,4 +1,4 @@
-"""Pruning: the small simplex method against HiGHS, sums against all sums, and who dominates whom."""
+"""Pruning: the small simplex method against HiGHS, sums against all sums, who dominates whom."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ seeds = st.integers(0, 2**32 - 1)
 
 
 def random_vectors(seed, max_vectors=25, max_states=8):
-    """Return vectors of a kind that makes trouble: ties, copies, near copies, zeros, large offsets."""
+    """Return vectors of a kind that makes trouble: ties, near copies, zeros, large offsets."""
     rng = np.random.default_rng(seed)
     K, S = rng.integers(1, max_vectors + 1), rng.integers(1, max_states + 1)
     kind = rng.integers(5)

@@ -15,6 +15,8 @@ Ints = NDArray[np.int64]
 
 # What a vector adds is told from rounding above this part of what the vectors differ by.
 ROUNDING = 1e-12
+# Beliefs further apart than this are not the same; leads smaller than this are none.
+APART, ZERO = 1e-9, 1e-300
 
 
 def prune(alphas: ArrayLike, tol: float = 1e-9) -> NDArray[np.intp]:
@@ -104,12 +106,11 @@ def needed_sums(
         mass = inside.sum(axis=1)
         points = np.concatenate([points, inside[mass > 0] / mass[mass > 0, np.newaxis]])
     eps = max(tol / scale, ROUNDING)
+    apart = _apart(A, B)
     room = 2 * (len(A) + len(B)) + 64
     while True:
-        pairs = np.empty((room, 2), np.int64)
-        kept, beliefs = np.empty((room, len(decides))), np.empty((room, len(decides)))
-        done = np.zeros((len(A), len(B)), np.bool_)
-        count = _simplex.needed_sums(A, B, eps, points, done, pairs, kept, beliefs)
+        pairs, beliefs = np.empty((room, 2), np.int64), np.empty((room, len(decides)))
+        count = _simplex.needed_sums(A, B, eps, points, apart, pairs, beliefs)
         if count >= 0:
             break
         points = np.concatenate([points, beliefs])
@@ -117,6 +118,35 @@ def needed_sums(
     witnesses = np.zeros((count, S))
     witnesses[:, decides] = beliefs[:count]
     return pairs[:count], witnesses, eps * scale
+
+
+def _apart(A: Floats, B: Floats) -> NDArray[np.bool_]:
+    """Tell for which pairs (i, j) there is no belief where both A[i] and B[j] can be best."""
+    if 1 in (len(A), len(B), A.shape[1]):
+        return np.zeros((len(A), len(B)), np.bool_)
+    (low_A, high_A), (low_B, high_B) = _box(A), _box(B)
+    low = np.maximum(low_A[:, np.newaxis], low_B)
+    high = np.minimum(high_A[:, np.newaxis], high_B)
+    return np.any(low > high + APART, axis=2)
+
+
+def _box(A: Floats) -> tuple[Floats, Floats]:
+    """Return bounds low <= b <= high on the beliefs where each vector is the best of all.
+
+    Against one other vector they are exact, so on two states they are the ends of an interval.
+    """
+    low, high = np.zeros(A.shape), np.ones(A.shape)
+    for i, a in enumerate(A):
+        lead = np.delete(a - A, i, axis=0)
+        order = np.sort(lead, axis=1)
+        # Where a is behind another, the most that it is ahead elsewhere must make up for it.
+        behind, most = np.minimum(lead, -ZERO), np.maximum(order[:, -1:], 0)
+        high[i] = np.where(lead < 0, most / (most - behind), 1).min(axis=0)
+        # Where a is ahead in one state only, that state must make up for the least it is behind.
+        only = order[:, -2] < 0
+        state, next_best = lead[only].argmax(axis=1), order[only, -2]
+        np.maximum.at(low[i], state, -next_best / (np.maximum(order[only, -1], 0) - next_best))
+    return low, high
 
 
 def distance(A: Floats, C: Floats) -> tuple[float, Floats]:
@@ -155,8 +185,10 @@ def gain(A: Floats, C: Floats, low: float = -np.inf) -> tuple[float, Floats, Flo
     A, C = A - C[0], C - C[0]
     scale = float(max(np.abs(A).max(), np.abs(C).max(), np.finfo(float).tiny))
     belief, mixture = np.full(S, 1 / S), np.zeros(K)
-    bound = _simplex.furthest(A / scale, C / scale, low / scale, belief, mixture)
-    return float(bound * scale), belief, mixture
+    bound = _simplex.furthest(
+        A / scale, np.ascontiguousarray(C.T / scale), low / scale, belief, mixture
+    )
+    return float(bound * scale) if mixture.any() else low, belief, mixture
 
 
 @dataclass(frozen=True)

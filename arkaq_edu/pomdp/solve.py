@@ -134,7 +134,9 @@ def _endless(pomdp: POMDP, tol: float) -> ValueFunction:
     graph = PolicyGraph(step.actions, nearest[step.branches])
     V = ValueFunction(step.alphas, graph.actions, graph.branches, None, error)
     closed = ValueFunction(graph.values(pomdp), graph.actions, graph.branches)
-    closed_error = bellman_error(pomdp, closed) / (1 - gamma)
+    # Where it closes exactly, as fine as can be; else no finer than asked for.
+    again = backup(pomdp, closed.alphas, 0.0 if residual < finest / 100 else finest, step.beliefs)
+    closed_error = (distance(again.alphas, closed.alphas)[0] + again.lost) / (1 - gamma)
     if closed_error <= max(tol, error):
         V = replace(closed, error=closed_error)
     if V.error > tol:
