@@ -351,6 +351,9 @@ def test_a_drag_by_gain_goes_from_where_the_sliders_were_and_tells_of_both_at_on
     view.drag = pulled(4, (0.0, 0.0), (0.0, 0.0), panel=1)
     view.arrows = (2, -4)
     assert both.value == (-41, 58), "a key goes the way that a drag goes"
+    told.clear()
+    both.value = (7, 8)
+    assert [slider.value for slider in both.children] == [7, 8] and set(told) == {(7, 8)}
 
 
 def test_two_drags_share_a_canvas():

@@ -209,8 +209,9 @@ class Drag(ipywidgets.VBox):
 
     def _spread(self, change: Any) -> None:
         values = change["new"] if len(self.children) > 1 else [change["new"]]
-        for slider, value in zip(self.children, values, strict=True):
-            slider.value = value
+        with self.hold_trait_notifications():
+            for slider, value in zip(self.children, values, strict=True):
+                slider.value = value
 
 
 class Explorer(ipywidgets.VBox):
