@@ -1,4 +1,4 @@
-"""The task's speed against the pymunk steps it makes, and the time of a training."""
+"""The tasks' speed, the first against the pymunk steps it makes, and the time of a training."""
 
 from __future__ import annotations
 
@@ -43,6 +43,13 @@ def main() -> None:
     ratio = np.median([steps / task for task, steps in pairs])
     print(f"a cycle of the task {task:.0f} us; its {SUBSTEPS} bare pymunk steps {steps:.0f} us")
     print(f"speed of the task over bare pymunk: {ratio:.2f} (wanted: at least 0.5)")
+    goal = gymnasium.make("arkaq_edu:ScoreGoal-v0")
+    time_task(goal, actions[:10])
+    for name, seconds in (
+        ("to the ball", task / 1e6),
+        ("at goal", np.median([time_task(goal, actions) for _ in range(ROUNDS)])),
+    ):
+        print(f"actions a second {name}, at random: {1 / seconds:.0f} (wanted: at least 2000)")
     begin = time.process_time()
     agent = train(seed=0, progress=False)
     spent = time.process_time() - begin
