@@ -93,6 +93,7 @@ def test_one_more_step_is_one_backup(seed):
     pomdp = random_pomdp(seed)
     V = solve_pomdp(pomdp, 4)
     for b in random_beliefs(pomdp.n_states, seed, 20):
+        assert V.horizon == 4 and V.shorter.horizon == 3
         assert V.value(b) == pytest.approx(backed_up(pomdp, V.shorter, b), abs=1e-9)
         assert V.value(b) == pytest.approx(b @ V.alphas[V.best(b)], abs=1e-12)
         assert V.action(b) == V.actions[V.best(b)]
@@ -151,7 +152,7 @@ def test_the_tiger():
     pomdp = problem("tiger")
     V = solve_pomdp(pomdp)
     assert V.value([0.5, 0.5]) == pytest.approx(19.3714, abs=1e-4)
-    assert V.error <= 1e-6 and len(V) == 9
+    assert V.error <= 1e-6 and len(V) == len(V.graph) == 9
     # By hand. Nodes: how many times more it was heard on the left, -2 ... 2.
     wait, left, right = (pomdp.actions.index(a) for a in ("listen", "open-left", "open-right"))
     by_hand = PolicyGraph([left, wait, wait, wait, right], [[2, 2], [2, 0], [3, 1], [4, 2], [2, 2]])
@@ -162,11 +163,11 @@ def test_the_tiger():
 
 
 @settings(max_examples=40, deadline=None)
-@given(seeds, st.sampled_from([1e-1, 1e-3]))
+@given(seeds, st.sampled_from([1.0, 1e-1, 1e-2]))
 def test_the_error_is_certified(seed, tol):
-    pomdp = random_pomdp(seed, high=0.8)
-    rough, fine = solve_pomdp(pomdp, tol=tol), solve_pomdp(pomdp, tol=tol / 100)
-    assert rough.error <= tol and fine.error <= tol / 100
+    pomdp = random_pomdp(seed, 3, 3, 2, high=0.7)
+    rough, fine = solve_pomdp(pomdp, tol=tol), solve_pomdp(pomdp, tol=tol / 10)
+    assert rough.error <= tol and fine.error <= tol / 10
     assert distance(rough.alphas, fine.alphas)[0] <= rough.error + fine.error
     # A long horizon comes as near by itself.
     h = 1 + int(np.log(tol / 4 * (1 - pomdp.gamma)) / np.log(pomdp.gamma))
@@ -196,10 +197,13 @@ def test_no_belief_has_a_larger_bellman_error_and_one_has_it(seed):
 
 @settings(max_examples=40, deadline=None)
 @given(seeds)
-def test_the_policy_graph_earns_what_is_said(seed):
-    pomdp = random_pomdp(seed, high=0.8)
-    V = solve_pomdp(pomdp, tol=1e-3)
+def test_a_policy_graph_earns_what_is_said(seed):
+    pomdp = random_pomdp(seed, 3, 3, 2, high=0.8)
+    V = solve_pomdp(pomdp, tol=1e-2)
     graph = V.graph
+    if graph is None:  # some go on with ever new plans
+        assert V.branches.shape == (len(V), 0)
+        return
     # Followed for so long that nothing is left, from any guess.
     values = np.zeros(V.alphas.shape)
     for _ in range(200):
@@ -207,9 +211,7 @@ def test_the_policy_graph_earns_what_is_said(seed):
         step = np.einsum("kst,kt->ks", pomdp.T[graph.actions], later)
         values = pomdp.R[:, graph.actions].T + pomdp.gamma * step
     np.testing.assert_allclose(graph.values(pomdp), values, atol=1e-9)
-    b = random_beliefs(pomdp.n_states, seed)
-    earned = (values[V.best(b)] * b).sum(axis=1)
-    np.testing.assert_allclose(earned, V.value(b), atol=2e-3)
+    np.testing.assert_allclose(V.alphas, values, atol=1e-9)
 
 
 def test_a_large_policy_graph_is_evaluated_alike(monkeypatch):
@@ -263,7 +265,7 @@ def test_bad_input_is_refused():
         V.value([0.5, 0.6])
     with pytest.raises(ValueError, match=r"k must be an integer in \[0, 4\], got 5"):
         V.tree(5)
-    with pytest.raises(ValueError, match="goes on for ever"):
+    with pytest.raises(ValueError, match="go on for ever"):
         solve_pomdp(pomdp).tree(0)
     with pytest.raises(ValueError, match=r"branches must hold integers in \[0, 1\], got 2"):
         PolicyGraph([0, 0], [[0, 2], [0, 0]])

@@ -46,9 +46,9 @@ def solve_pomdp(pomdp: POMDP, horizon: int | None = None, tol: float = 1e-6) -> 
     Returns
     -------
     ValueFunction
-        With a horizon, `shorter` leads through all the shorter ones. Without it, the value of a
-        policy graph, which earns exactly these values, where one was found; `error` says how far
-        from V* they are at most.
+        With a horizon, `shorter` leads through all the shorter ones. Without it, where the plans
+        close to a policy graph, what that graph earns, exactly; in any case `error` says how far
+        from V* it is at most.
 
     Raises
     ------
@@ -98,12 +98,14 @@ def solve_pomdp(pomdp: POMDP, horizon: int | None = None, tol: float = 1e-6) -> 
     alphas = np.ascontiguousarray(pomdp.R.T)
     pairs, beliefs, lost = needed_sums(alphas, np.zeros((1, pomdp.n_states)), 0.0)
     actions = np.sort(pairs[:, 0])
-    V = ValueFunction(alphas[actions], actions, np.empty((len(actions), 0), np.int64), None, lost)
-    for _ in range(horizon - 1):
+    V = ValueFunction(
+        alphas[actions], actions, np.empty((len(actions), 0), np.int64), None, lost, 1
+    )
+    for steps in range(2, horizon + 1):
         step = backup(pomdp, V.alphas, 0.0, beliefs)
         beliefs = step.beliefs
         error = step.lost + pomdp.gamma * V.error
-        V = ValueFunction(step.alphas, step.actions, step.branches, V, error)
+        V = ValueFunction(step.alphas, step.actions, step.branches, V, error, steps)
     return V
 
 
@@ -132,7 +134,7 @@ def _endless(pomdp: POMDP, tol: float) -> ValueFunction:
     # Where a plan went on with a vector of V, the graph goes on with the nearest of H V.
     nearest = np.array([np.abs(step.alphas - alpha).max(axis=1).argmin() for alpha in alphas])
     graph = PolicyGraph(step.actions, nearest[step.branches])
-    V = ValueFunction(step.alphas, graph.actions, graph.branches, None, error)
+    V = ValueFunction(step.alphas, step.actions, step.branches[:, :0], None, error)
     closed = ValueFunction(graph.values(pomdp), graph.actions, graph.branches)
     # Where it closes exactly, as fine as can be; else no finer than asked for.
     again = backup(pomdp, closed.alphas, 0.0 if residual < finest / 100 else finest, step.beliefs)

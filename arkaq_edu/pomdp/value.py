@@ -26,11 +26,13 @@ class ValueFunction:
     branches : ndarray of int, shape (K, Z)
         Where each plan goes on after each observation: a row of `shorter`, or, without a
         `shorter`, a row of this same value function (a policy graph). Shape (K, 0) for plans of
-        one step.
+        one step, and where no policy graph is known.
     shorter : ValueFunction or None
         The value function with one step less to go.
     error : float
         A certified bound: nowhere on the simplex is V further from the optimal value than this.
+    horizon : int or None
+        The number of steps still to go; None where the future has no end.
 
     Notes
     -----
@@ -60,6 +62,7 @@ class ValueFunction:
     branches: NDArray[np.intp]
     shorter: ValueFunction | None = None
     error: float = 0.0
+    horizon: int | None = None
 
     def __len__(self) -> int:
         return len(self.alphas)
@@ -130,7 +133,7 @@ class ValueFunction:
 
     @property
     def graph(self) -> PolicyGraph | None:
-        """The policy graph, where the plans go on among themselves; else None."""
+        """The policy graph, where the plans are known to go on among themselves; else None."""
         if self.shorter is not None or not self.branches.shape[1]:
             return None
         return PolicyGraph(self.actions, self.branches)
@@ -153,8 +156,8 @@ class ValueFunction:
             If there is no such plan, or it has no end.
         """
         k = integer("k", k, 0, len(self) - 1)
-        if self.shorter is None and self.branches.shape[1]:
-            raise ValueError("k must be a plan with an end, this policy graph goes on for ever")
+        if self.horizon is None:
+            raise ValueError("k must be a plan with an end, but these go on for ever")
         # Plans share what follows, and so may the trees: written out they would be many.
         memory: dict[tuple[int, int], PolicyTree] = {}
 
