@@ -8,7 +8,9 @@ Set the environment variable ``NUMBA_DISABLE_JIT=1`` to step through a kernel in
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 try:
@@ -41,3 +43,19 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
         return function
     # What was typed at a prompt has no file beside which the machine code could be kept.
     return numba.njit(cache=os.path.exists(function.__code__.co_filename))(function)
+
+
+def word_before_compiling(function: Callable[..., Any], what: str) -> None:
+    """Say on a terminal that a kernel is about to be compiled, where that takes long.
+
+    In a notebook nothing is said: what a cell shows must be the same every time.
+
+    Examples
+    --------
+    >>> word_before_compiling(kernel(lambda x: x), "nothing")
+    """
+    if not sys.stderr.isatty() or getattr(function, "signatures", True):
+        return  # nobody to read it, no numba, or compiled already
+    cache = Path(function.stats.cache_path or "")  # type: ignore[attr-defined]
+    if not any(cache.glob(f"*{function.__name__}-*.nbi")):
+        print(f"Compiling {what}, once: this takes some ten seconds.", file=sys.stderr)

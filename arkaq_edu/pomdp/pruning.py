@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu._checks import array, number
+from arkaq_edu._compiled import word_before_compiling
 from arkaq_edu.pomdp import _simplex
 
 Floats = NDArray[np.floating]
@@ -106,6 +107,7 @@ def needed_sums(
         mass = inside.sum(axis=1)
         points = np.concatenate([points, inside[mass > 0] / mass[mass > 0, np.newaxis]])
     eps = max(tol / scale, ROUNDING)
+    word_before_compiling(_simplex.needed_sums, "the loops of pruning")
     apart = _apart(A, B)
     room = 2 * (len(A) + len(B)) + 64
     while True:

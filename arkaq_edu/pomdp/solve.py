@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -67,7 +66,11 @@ def solve_pomdp(pomdp: POMDP, horizon: int | None = None, tol: float = 1e-6) -> 
     step found its vectors needed, and a policy graph that no longer changes is evaluated by its
     linear system (E. Hansen, UAI 1998; N. Zhang, W. Zhang, JAIR 14, 2001). They need no proof:
     the exact step after them measures what they came to. With r the largest |H V - V| over the
-    simplex, H V is within r gamma / (1 - gamma) of V*.
+    simplex, H V is within r gamma / (1 - gamma) of V*; what pruning leaves out is counted too.
+
+    How many vectors are needed depends on the problem, and can grow beyond any patience: then
+    `solve_point_based` gives bounds. The first call compiles the loops of pruning, which takes some
+    ten seconds, once.
 
     References
     ----------
@@ -131,16 +134,11 @@ def _endless(pomdp: POMDP, tol: float) -> ValueFunction:
         both = np.concatenate([step.alphas, improve(pomdp, step.alphas, beliefs, enough)])
         pairs, _, _ = needed_sums(both, np.zeros((1, pomdp.n_states)), coarse / 10, beliefs)
         alphas = both[np.sort(pairs[:, 0])]
-    # Where a plan went on with a vector of V, the graph goes on with the nearest of H V.
-    nearest = np.array([np.abs(step.alphas - alpha).max(axis=1).argmin() for alpha in alphas])
-    graph = PolicyGraph(step.actions, nearest[step.branches])
-    V = ValueFunction(step.alphas, step.actions, step.branches[:, :0], None, error)
-    closed = ValueFunction(graph.values(pomdp), graph.actions, graph.branches)
-    # Where it closes exactly, as fine as can be; else no finer than asked for.
-    again = backup(pomdp, closed.alphas, 0.0 if residual < finest / 100 else finest, step.beliefs)
-    closed_error = (distance(again.alphas, closed.alphas)[0] + again.lost) / (1 - gamma)
-    if closed_error <= max(tol, error):
-        V = replace(closed, error=closed_error)
+    # Where the iteration came to rest a graph can be proved as finely as floats allow.
+    tol_of_graph = 0.0 if residual < finest / 100 else finest
+    V = _close(pomdp, step, alphas, tol_of_graph)
+    if V.error > max(tol, error):
+        V = ValueFunction(step.alphas, step.actions, step.branches[:, :0], None, error)
     if V.error > tol:
         warnings.warn(
             f"tol={tol:g} is finer than rounding lets be proved here: error={V.error:.2g}",
@@ -148,6 +146,17 @@ def _endless(pomdp: POMDP, tol: float) -> ValueFunction:
             stacklevel=3,
         )
     return V
+
+
+def _close(pomdp: POMDP, step: Backup, alphas: Floats, tol: float) -> ValueFunction:
+    """Return what a policy graph on the plans of H V earns, and how far from V* that is at most."""
+    # Where a plan went on with a vector of V, the graph goes on with the nearest of H V.
+    nearest = np.array([np.abs(step.alphas - alpha).max(axis=1).argmin() for alpha in alphas])
+    graph = PolicyGraph(step.actions, nearest[step.branches])
+    earned = graph.values(pomdp)
+    again = backup(pomdp, earned, tol, step.beliefs)
+    error = (distance(again.alphas, earned)[0] + again.lost) / (1 - pomdp.gamma)
+    return ValueFunction(earned, graph.actions, graph.branches, None, error)
 
 
 def bellman_error(pomdp: POMDP, V: ValueFunction) -> float:
