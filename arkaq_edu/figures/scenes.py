@@ -22,6 +22,7 @@ from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
+from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _checks
@@ -46,7 +47,7 @@ MODULES: dict[str, tuple[Place, bool]] = {
 TOLD = (90.0, 110.0, -0.3)
 
 _KICK_AT = 1400.0  # mm before the goal: figures 5.31 to 5.33
-_NEAR_GOAL = (800.0, 3000.0, -1100.0, 1100.0)
+_NEAR_GOAL = (1000.0, 3000.0, -700.0, 700.0)
 
 
 class Setup(NamedTuple):
@@ -448,5 +449,9 @@ def plot_distance_error(
     )
     marks = style.measurements(x, y, ax, label="measured")
     ax.set(xscale="log", yscale="log")
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(StrMethodFormatter("{x:,g}"))
+        axis.set_minor_locator(NullLocator())
     ax.legend(frameon=False)
     return ErrorPlot(ax, marks, fit, pinhole, float(exponent))

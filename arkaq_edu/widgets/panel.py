@@ -161,7 +161,7 @@ class Drive:
         self.ball_trail = self.world.swing_paw()
         rolled = math.dist(self.ball_trail[0], self.ball_trail[-1])
         scored = GoalSupervisor(distance=2000.0).judge(self.world).is_success
-        self.told = f"kicked {rolled:,.0f} mm, {'goal!' if scored else 'no goal'}"
+        self.told = f"kicked {rolled:,.0f} mm{' into the goal' if scored else ', no goal'}"
         if rolled == 0.0:
             self.told = "the paw met no ball"
 
@@ -227,7 +227,7 @@ class Drive:
             layers.append(Points([x], [y], 9.0, hollow=True))
         if ball or goal:
             layers.append(Text(0, -9, _measured(ball, goal), style.QUIET))
-        ends = (0.0, float(WIDTH)), (-18.0, HEIGHT + 18.0)
+        ends = (0.0, WIDTH + 8.0), (-18.0, HEIGHT + 18.0)
         return Panel("", "", *ends, layers, bare=True)
 
     def _pixel(self, orientation: float, distance: float, height: float) -> tuple[float, float]:
