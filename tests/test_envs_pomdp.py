@@ -66,7 +66,13 @@ def test_at_the_start_there_is_nothing_to_observe():
 def test_an_episode_can_start_in_a_given_state():
     env = make("corridor")
     assert env.reset(options={"state": 2})[1] == {"state": 2}
-    for options in ({"state": 4}, {"state": -1}, {"place": 1}, {"state": 1, "place": 1}):
+    for options in (
+        {"state": 4},
+        {"state": -1},
+        {"state": [0, 1]},
+        {"place": 1},
+        {"state": 1, "place": 1},
+    ):
         with pytest.raises(ValueError, match=r"options must hold a state in \[0, 3\]"):
             env.reset(options=options)
 

@@ -205,7 +205,10 @@ def test_schedules_fall_as_they_say():
         (lambda: Bandit(P).pull(-1, rng=0), r"arms must hold integers in \[0, 3\], got -1"),
         (lambda: EpsilonGreedy(1.2), r"epsilon must be a number in \[0, 1\], got 1.2"),
         (lambda: Boltzmann(0), r"temperature must be a number in \(0, inf\], got 0"),
-        (lambda: UCB(-1), r"c must be a number in \[0, inf\], got -1"),
+        (lambda: UCB(-1), r"c must be a number in \[0, inf\), got -1"),
+        (lambda: UCB(math.inf), r"c must be a number in \[0, inf\), got inf"),
+        (lambda: argmax_shared([1.0, math.nan], rng=0), "values must be numbers"),
+        (lambda: argmax_shared([], rng=0), "values must be numbers, at least one in a row"),
         (lambda: play(Bandit(P), UCB(), pulls=0, rng=0), "pulls must be an integer >= 1, got 0"),
         (
             lambda: play(Bandit(P), EpsilonGreedy(lambda n: 2.0), pulls=1, rng=0),

@@ -1,6 +1,7 @@
 import gymnasium
 import numpy as np
 import pytest
+from gymnasium.spaces import Discrete
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -37,7 +38,8 @@ def corridor(n=5, gamma=1.0 - 1e-12):
 class Script(gymnasium.Env):
     """An environment that plays back (state, reward, terminated, truncated) whatever is done."""
 
-    def __init__(self, *steps, start=0):
+    def __init__(self, *steps, start=0, n_states=1, n_actions=1):
+        self.observation_space, self.action_space = Discrete(n_states), Discrete(n_actions)
         self.steps, self.start, self.actions, self.resets = steps, start, [], 0
 
     def reset(self, *, seed=None, options=None):
@@ -163,7 +165,7 @@ def test_an_episode_that_is_over_begins_anew_and_only_a_cut_one_has_a_future(ter
 
 
 def test_exploring_tries_the_untried_first():
-    env = Script(*[(0, 0.0, False, False)] * 10)
+    env = Script(*[(0, 0.0, False, False)] * 10, n_actions=5)
     learner = QLearner(1, 5, alpha=1.0, gamma=0.5, rng=3)
     explore(env, learner, max_backups=5, max_repeat=1)
     assert sorted(env.actions) == [0, 1, 2, 3, 4]
@@ -202,7 +204,7 @@ def test_exploiting_draws_by_temperature_and_asks_its_schedule_once_a_backup():
         asked.append(n)
         return 0.5 if n <= 2000 else 0.0
 
-    env = Script(*[(0, 5.0, False, False)] * 2050)
+    env = Script(*[(0, 5.0, False, False)] * 2050, n_actions=2)
     learner = QLearner(1, 2, alpha=1e-12, gamma=0.0, rng=3)  # it changes, and learns nothing
     learner.Q[0] = [0.0, 1.0]
     exploit(env, learner, temperature=cooling, max_backups=2050, max_repeat=1, tol=0.0)
@@ -299,8 +301,19 @@ def test_practice_calls_a_schedule_of_the_learning_rate():
             "max_steps must be an integer >= 1",
         ),
         (lambda m, q: discounted_returns([np.nan], 0.5), "r must hold finite numbers, got nan"),
-        (lambda m, q: explore(Script(), q, tol=-1), "tol must be a number in"),
-        (lambda m, q: exploit(Script(), q, max_backups=0), "max_backups must be an integer >= 1"),
+        (
+            lambda m, q: exploit(gymnasium.make("CartPole-v1"), q),
+            "env must be Discrete, with the learner's 7 states and 1 actions, got observations Box",
+        ),
+        (
+            lambda m, q: explore(gymnasium.make("FrozenLake-v1"), q),
+            r"env must be Discrete, .* got observations Discrete\(16\) and actions Discrete\(4\)",
+        ),
+        (lambda m, q: explore(Script(n_states=7), q, tol=-1), "tol must be a number in"),
+        (
+            lambda m, q: exploit(Script(n_states=7), q, max_backups=0),
+            "max_backups must be an integer >= 1",
+        ),
     ],
 )
 def test_bad_arguments_are_refused(call, message):

@@ -244,6 +244,15 @@ def test_average_reward_is_the_best_average_of_all_policies(seed, sparse):
     np.testing.assert_allclose(average_reward(mdp), expected, atol=1e-6)
 
 
+@pytest.mark.parametrize("unit", [1e-15, 1e15])
+def test_average_reward_does_not_depend_on_the_unit(unit):
+    world = delayed_rewards(rewards=np.array([2.0, 10.0, 11.0]) * unit)
+    np.testing.assert_allclose(average_reward(world)[0] / unit, [2, 10, 11])
+    reached, missed = np.array([[0, 1], [0, 1.0]]), np.eye(2)
+    mdp = MDP([missed, reached], np.array([[0, -1], [3, 3.0]]) * unit, 0.9)
+    np.testing.assert_allclose(average_reward(mdp) / unit, [[3, 3], [3, 3]])
+
+
 @settings(max_examples=30, deadline=None)
 @given(seeds)
 def test_average_is_the_limit_of_the_discounted_value_per_step(seed):
@@ -311,6 +320,7 @@ def test_ends_are_left_by_no_action_and_earn_nothing():
         ({"R": [[1.0, 2.0]]}, r"R must have shape \(2, 1\), got \(1, 2\)"),
         ({"R": [[1.0], [math.inf]]}, r"R must hold finite numbers, got inf at \(1, 0\)"),
         ({"gamma": 1.0}, r"gamma must be a number in \[0, 1\), got 1.0"),
+        ({"R": [[1.0], [-2e307]]}, r"R must lie in \[-1.798e\+307, 1.798e\+307\] .* got 2e\+307"),
         ({"gamma": -0.1}, r"gamma must be a number in \[0, 1\), got -0.1"),
         ({"start": [0.5, 0.4]}, "start must sum to 1"),
     ],

@@ -259,7 +259,7 @@ def test_a_model_that_overflows_is_refused(read):
     rewards = "".join(f"R: * : a : * : {z} 1.797693134e308\n" for z in "xyz")
     with pytest.raises(PomdpFormatError, match="R must hold finite numbers"):
         read(text + rewards)
-    assert np.isfinite(read(text + rewards.replace("1.797693134", "1.797")).R).all()
+    assert np.isfinite(read(text + rewards.replace("1.797693134", "0.8")).R).all()
 
 
 @pytest.mark.parametrize("counts", [(65536, 65536, 65536), (4097, 1, 1), (1, 65536, 257)])
@@ -371,7 +371,7 @@ def pomdps(draw):
         word = st.text("aZ0_-", max_size=5).map("n".__add__)
         return draw(st.none() | st.lists(word, min_size=n, max_size=n, unique=True))
 
-    reward = st.floats(allow_nan=False, allow_infinity=False)
+    reward = st.floats(-1e290, 1e290)
     R = [[draw(reward) for _ in range(n_actions)] for _ in range(n_states)]
     return POMDP(
         rows(n_states, n_actions, n_states),

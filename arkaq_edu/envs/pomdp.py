@@ -88,7 +88,7 @@ class POMDPEnv(gymnasium.Env[np.int64, np.int64]):
         given = dict(options or {})
         if not given:
             self.state = int(self.np_random.choice(states, p=self.pomdp.start))
-        elif set(given) == {"state"} and given["state"] in states:
+        elif set(given) == {"state"} and given["state"] in range(len(states)):
             self.state = int(given["state"])
         else:
             raise ValueError(

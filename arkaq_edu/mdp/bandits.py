@@ -197,13 +197,13 @@ class UCB:
     Parameters
     ----------
     c : float, default sqrt(2)
-        How wide the margin is, at least 0. With sqrt(2) it is UCB1, whose regret after n pulls is
+        How wide the margin is, in [0, inf). With sqrt(2) it is UCB1, whose regret after n pulls is
         at most sum_i 8 ln(n) / d_i + (1 + pi^2 / 3) d_i, with d_i = max(p) - p_i > 0.
 
     Raises
     ------
     ValueError
-        If `c` is negative.
+        If `c` is negative or not finite.
 
     References
     ----------
@@ -219,7 +219,7 @@ class UCB:
     c: float = 2**0.5
 
     def __post_init__(self) -> None:
-        number("c", self.c, 0)
+        number("c", self.c, 0, open_high=True)
 
     def choose(
         self, counts: NDArray[np.int64], means: NDArray[np.float64], rng: np.random.Generator

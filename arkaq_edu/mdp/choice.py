@@ -70,6 +70,11 @@ def argmax_shared(values: ArrayLike, rng: np.random.Generator | int) -> NDArray[
     -------
     ndarray of int, shape (...)
 
+    Raises
+    ------
+    ValueError
+        If there is no action, or a value is NaN.
+
     Notes
     -----
     Equation 3.3 prints Q(s, a) = argmax Q, and gives every best action probability 1; right is
@@ -85,6 +90,8 @@ def argmax_shared(values: ArrayLike, rng: np.random.Generator | int) -> NDArray[
     array([1, 0])
     """
     values = np.asarray(values)
+    if not values.size or np.isnan(values).any():
+        raise ValueError(f"values must be numbers, at least one in a row, got {values}")
     lots = np.random.default_rng(rng).random(values.shape)
     best = values == values.max(axis=-1, keepdims=True)
     return np.where(best, lots, -1.0).argmax(axis=-1)

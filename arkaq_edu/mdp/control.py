@@ -25,6 +25,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
+from gymnasium.spaces import Discrete
 from numpy.typing import NDArray
 
 from arkaq_edu._checks import integer, number
@@ -150,7 +151,7 @@ def explore(
     Raises
     ------
     ValueError
-        If an argument is out of range.
+        If an argument is out of range, or the learner's table does not fit the environment.
 
     Notes
     -----
@@ -221,7 +222,7 @@ def exploit(
     Raises
     ------
     ValueError
-        If an argument is out of range.
+        If an argument is out of range, or the learner's table does not fit the environment.
 
     References
     ----------
@@ -260,6 +261,12 @@ def _learn(
 ) -> Learning:
     """Run the loop that figures 4.3 and 4.4 share; they differ in how they choose."""
     tol = number("tol", tol, 0)
+    n_states, n_actions = learner.Q.shape
+    if not _holds(env.observation_space, n_states) or not _holds(env.action_space, n_actions):
+        raise ValueError(
+            f"env must be Discrete, with the learner's {n_states} states and {n_actions} actions, "
+            f"got observations {env.observation_space} and actions {env.action_space}"
+        )
     changes: list[float] = []
     episodes: list[tuple[float, int]] = []
     earned, length = 0.0, 0
@@ -289,6 +296,11 @@ def _learn(
     returns = np.array([earned for earned, _ in episodes], dtype=np.float64)
     lengths = np.array([length for _, length in episodes], dtype=np.int64)
     return Learning(np.array(changes), returns, lengths)
+
+
+def _holds(space: Any, n: int) -> bool:
+    """Return whether a table of n entries has one for each element of a space, and no more."""
+    return isinstance(space, Discrete) and (space.start, space.n) == (0, n)
 
 
 def practise(

@@ -47,8 +47,8 @@ class MDP:
     Raises
     ------
     ValueError
-        If a shape does not fit, an entry is not finite, a row of `T` is no distribution, or
-        `gamma` is outside [0, 1).
+        If a shape does not fit, an entry is not finite, a row of `T` is no distribution, `gamma`
+        is outside [0, 1), or a reward for ever, R / (1 - gamma), is too large for a float.
 
     References
     ----------
@@ -77,6 +77,12 @@ class MDP:
             raise ValueError(f"T must have shape (A, S, S), none of them 0, got {self.T.shape}")
         self.R = array("R", R, (self.n_states, self.n_actions)).copy()
         self.gamma = number("gamma", gamma, 0, 1, open_high=True)
+        most = np.finfo(float).max * (1 - self.gamma)
+        if (np.abs(self.R) > most).any():
+            raise ValueError(
+                f"R must lie in [{-most:.4g}, {most:.4g}] for its discounted sum to be a float, "
+                f"got {np.abs(self.R).max():.4g}"
+            )
         if start is None:
             start = np.full(self.n_states, 1 / self.n_states)
         self.start = distribution("start", array("start", start, (self.n_states,))).copy()

@@ -143,7 +143,7 @@ def average_reward(mdp: MDP) -> NDArray[np.float64]:
         average = (mdp.T @ gain).T
         onward = mdp.R + (mdp.T @ bias).T
         # Rounding must not pass for an improvement: two equal actions would take turns for ever.
-        rounding = 1e-11 * (1 + np.abs(mdp.R).max() + np.abs(bias).max())
+        rounding = 1e-11 * (np.abs(mdp.R).max() + np.abs(bias).max())
         best = average.max(axis=1)
         higher = best > average[states, policy] + rounding
         onward[average < best[:, None] - rounding] = -np.inf
