@@ -45,7 +45,7 @@ class OneLineErrors(click.Group):
 @click.version_option(__version__, prog_name="arkaq")
 @click.pass_context
 def main(context: click.Context) -> None:
-    """Teach a legged robot to walk to a ball."""
+    """Teach a legged robot to walk to a ball, and to score."""
     if context.invoked_subcommand is None:
         click.echo(context.get_help())
 
@@ -74,17 +74,29 @@ def lab(folder: Path | None, copy_only: bool, no_browser: bool) -> None:
 
 
 _seed = click.option("--seed", type=click.IntRange(0), default=0, show_default=True)
+_TASKS = ("approach-ball", "score-goal")
+_goal_distance = click.option(
+    "--goal-distance",
+    type=click.Choice(["near", "far"]),
+    default="near",
+    show_default=True,
+    help="score-goal: where the robot stands.",
+)
 
 
 @main.command()
-@click.option("--vigilance", type=float, default=0.1, show_default=True, help="ART's vigilance.")
+@click.argument("task", type=click.Choice(_TASKS), default="approach-ball")
+@click.option(
+    "--vigilance", type=float, help="ART's vigilance.  [default: 0.1; goal: 0.06 near, 0.05 far]"
+)
 @click.option(
     "--kalman",
     type=click.Choice(["consistent", "thesis"]),
     default="consistent",
     show_default=True,
-    help="The Kalman filter's settings.",
+    help="approach-ball: the Kalman filter's settings.",
 )
+@_goal_distance
 @click.option(
     "--out",
     type=click.Path(dir_okay=False, writable=True, path_type=Path),
@@ -93,44 +105,80 @@ _seed = click.option("--seed", type=click.IntRange(0), default=0, show_default=T
     help="File for the agent; an interrupted training in it is taken up again.",
 )
 @_seed
-def train(vigilance: float, kalman: str, out: Path, seed: int) -> None:
-    """Teach a robot to walk to the ball, and say how well it does."""
-    from arkaq_edu.experiments import evaluate, greedy
-    from arkaq_edu.experiments import train as learn
+def train(
+    task: str, vigilance: float | None, kalman: str, goal_distance: str, out: Path, seed: int
+) -> None:
+    """Teach a robot a TASK, and say how well it does.
 
-    agent = learn(seed, vigilance, sensing=kalman, checkpoint=out)
-    judged = evaluate(greedy(agent), n=200, seed=10_000 + seed)
-    click.echo(
-        f"{out}: {agent.art.n_clusters_} states; ball reached in "
-        f"{judged.is_success.mean():.1%} of 200 fresh approaches, +50 in {judged.bonus.mean():.1%}"
-    )
+    TASK is approach-ball (the default) or score-goal.
+    """
+    from arkaq_edu import experiments
+
+    if task == "score-goal":
+        if kalman != "consistent":
+            raise click.UsageError("--kalman is of approach-ball: the thesis gives none for a goal")
+        goal: Any = experiments.goal
+        agent = goal.train(seed, vigilance, goal_distance, checkpoint=out)
+        shots = goal.shots(experiments.greedy(agent), 200, goal_distance, seed=10_000 + seed)
+        done = f"goals in {shots.is_success.mean():.1%} of 200 fresh kicks"
+    else:
+        vigilance = 0.1 if vigilance is None else vigilance
+        agent = experiments.train(seed, vigilance, sensing=kalman, checkpoint=out)
+        judged = experiments.evaluate(experiments.greedy(agent), n=200, seed=10_000 + seed)
+        done = (
+            f"ball reached in {judged.is_success.mean():.1%} of 200 fresh approaches, "
+            f"+50 in {judged.bonus.mean():.1%}"
+        )
+    click.echo(f"{out}: {agent.art.n_clusters_} states; {done}")
 
 
 @main.command()
-@click.argument("agent", required=False, type=click.Path(exists=True, dir_okay=False))
-@click.option("--distance", type=float, default=3500.0, show_default=True, help="mm")
+@click.argument("agent", default="approach-ball")
+@click.option("--distance", type=float, default=3500.0, show_default=True, help="Ball's, mm.")
 @click.option("--orientation", type=float, default=0.35, show_default=True, help="rad, left > 0")
+@_goal_distance
 @click.option(
     "--out",
     type=click.Path(dir_okay=False, writable=True, path_type=Path),
-    default="walk.gif",
-    show_default=True,
-    help="A .gif, or an .html page with a player.",
+    help="A .gif, or an .html page with a player.  [default: walk.gif or shot.gif]",
 )
 @_seed
-def watch(agent: str | None, distance: float, orientation: float, out: Path, seed: int) -> None:
-    """Film a trained agent on its way to the ball.
+def watch(
+    agent: str,
+    distance: float,
+    orientation: float,
+    goal_distance: str,
+    out: Path | None,
+    seed: int,
+) -> None:
+    """Film a trained agent at work.
 
-    AGENT is a file that `arkaq train` wrote; by default it is the course's own.
+    AGENT is a file that `arkaq train` wrote, or approach-ball (the default) or score-goal: then it
+    is the course's own.
     """
+    from arkaq_edu import experiments
     from arkaq_edu.arkaq import Arkaq
-    from arkaq_edu.experiments import load_agent, walk
-    from arkaq_edu.figures.animation import save_walk
+    from arkaq_edu.figures.animation import save_shot, save_walk
 
-    way = walk(Arkaq.load(agent) if agent else load_agent(), distance, orientation, seed)
-    save_walk(way, out)
-    end = "reached the ball" if way.is_success else "did not reach the ball"
-    click.echo(f"{out}: {end} in {len(way.table) - 1} footstep cycles, reward {way.reward:g}")
+    goal: Any = experiments.goal
+    if agent == "approach-ball":
+        who = experiments.load_agent()
+    elif agent == "score-goal":
+        who = goal.load_agent(goal_distance)
+    else:
+        who = Arkaq.load(agent)
+    if who.task == "goal":
+        out = out or Path("shot.gif")
+        shot = goal.shoot(who, orientation, goal_distance, seed)
+        save_shot(shot, out)
+        turns = len(shot.table) - 2
+        click.echo(f"{out}: {'a goal' if shot.is_success else 'a miss'} after {turns} turns")
+    else:
+        out = out or Path("walk.gif")
+        way = experiments.walk(who, distance, orientation, seed)
+        save_walk(way, out)
+        end = "reached the ball" if way.is_success else "did not reach the ball"
+        click.echo(f"{out}: {end} in {len(way.table) - 1} footstep cycles, reward {way.reward:g}")
 
 
 @main.command()
@@ -142,14 +190,20 @@ def watch(agent: str | None, distance: float, orientation: float, out: Path, see
     help="Folder for the page, the table and the agents.",
 )
 @click.option("--seeds", type=click.IntRange(1), default=20, show_default=True)
-@click.option("--approaches", type=click.IntRange(1), default=500, show_default=True)
+@click.option(
+    "--approaches",
+    type=click.IntRange(1),
+    default=500,
+    show_default=True,
+    help="Approaches, and kicks, by which each policy is judged.",
+)
 @click.option("--jobs", type=int, default=-1, show_default=True, help="Processes; -1: all cores.")
 def reproduce(out: Path, seeds: int, approaches: int, jobs: int) -> None:
     """Repeat the experiments of the thesis, over many seeds.
 
-    Writes index.html, which opens offline, and results.csv. One seed takes about a minute of one
-    core. The trained agents are kept: call it again after an interruption, and it goes on where it
-    was.
+    Writes index.html, which opens offline, and results.csv. One seed takes about two minutes of
+    one core. The trained agents are kept: call it again after an interruption, and it goes on
+    where it was.
     """
     import matplotlib
 
@@ -162,8 +216,8 @@ def reproduce(out: Path, seeds: int, approaches: int, jobs: int) -> None:
     table = results(seeds, approaches, folder=out, jobs=jobs)
     click.echo("drawing the figures")
     # The stream of the first seed is the one recorded for the course; its agent is in `out`.
-    agent = Arkaq.load(agent_file(out, "consistent", 0))
-    click.echo(write_report(out, table, FIGURES, agent=agent))
+    agent, goal_agent = (Arkaq.load(agent_file(out, kind, 0)) for kind in ("consistent", "near"))
+    click.echo(write_report(out, table, FIGURES, agent=agent, goal_agent=goal_agent))
 
 
 def _start_jupyterlab(folder: Path, no_browser: bool) -> None:

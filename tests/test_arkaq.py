@@ -15,7 +15,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
+from arkaq_edu._paths import data_file
 from arkaq_edu.arkaq import (
+    GOAL_Q_LEARNING,
+    GOAL_SEGMENTATION,
     Q_LEARNING,
     SEGMENTATION,
     Arkaq,
@@ -28,6 +31,8 @@ from arkaq_edu.arkaq import (
 
 TASK = "arkaq_edu:BallApproach-v0"
 BRIEF = Learning(patterns=150, exploration=200, exploitation=200)
+GOAL_TASK = "arkaq_edu:ScoreGoal-v0"
+BRIEF_GOAL = Learning.goal(patterns=100, exploration=60, exploitation=60)
 SENSINGS = {"thesis": Sensing.thesis(), "consistent": Sensing.consistent()}
 
 
@@ -58,6 +63,11 @@ def digest(agent):
 def brief_agent(seed=4, env=None, **options):
     learner = Arkaq(0.2, learning=BRIEF, rng=seed)
     return learner.learn(env or near_task(), progress=False, **options)
+
+
+def brief_scorer(seed=4, env=None, **options):
+    learner = Arkaq(0.06, task="goal", learning=BRIEF_GOAL, rng=seed)
+    return learner.learn(env or gymnasium.make(GOAL_TASK), progress=False, **options)
 
 
 @pytest.fixture(scope="module")
@@ -224,15 +234,36 @@ def reachable(automaton):
     return found
 
 
-@pytest.mark.parametrize("automaton", [SEGMENTATION, Q_LEARNING])
+@pytest.mark.parametrize(
+    "automaton", [SEGMENTATION, Q_LEARNING, GOAL_SEGMENTATION, GOAL_Q_LEARNING]
+)
 def test_every_state_can_be_reached_and_can_reach_the_end(automaton):
     assert reachable(automaton) == {*automaton.states, "done"}
     for state in automaton.states:
         assert "done" in reachable(Automaton(state, automaton.table))
 
 
-def test_the_table_holds_just_what_can_happen(monkeypatch):
-    happened = {id(SEGMENTATION): set(), id(Q_LEARNING): set()}
+class Blinking(gymnasium.Wrapper):
+    """Shows nothing in every ninth look."""
+
+    looks = 0
+
+    def blink(self, observation):
+        self.looks += 1
+        return observation * (self.looks % 9 > 0)
+
+    def reset(self, **options):
+        observation, info = self.env.reset(**options)
+        return self.blink(observation), info
+
+    def step(self, action):
+        observation, *rest = self.env.step(action)
+        return self.blink(observation), *rest
+
+
+def test_the_tables_hold_just_what_can_happen(monkeypatch):
+    tables = (SEGMENTATION, Q_LEARNING, GOAL_SEGMENTATION, GOAL_Q_LEARNING)
+    happened = {id(automaton): set() for automaton in tables}
     run = Automaton.run
 
     def run_and_tell(self, work):
@@ -248,7 +279,8 @@ def test_the_table_holds_just_what_can_happen(monkeypatch):
 
     monkeypatch.setattr(Automaton, "run", run_and_tell)
     brief_agent(env=near_task(patience=4))
-    for automaton in (SEGMENTATION, Q_LEARNING):
+    brief_scorer(env=Blinking(gymnasium.make(GOAL_TASK)))
+    for automaton in tables:
         assert happened[id(automaton)] == set(automaton.table)
 
 
@@ -326,7 +358,7 @@ def test_schedules():
     [
         ("learning_rate", 0), ("patterns", 0), ("period", 0), ("exploration", -1),
         ("exploitation", 2.5), ("hold", 0), ("gamma", 1), ("alpha_power", 2), ("alpha_least", -1),
-        ("cold", 0), ("hot", 0.1), ("lost_reward", math.nan),
+        ("cold", 0), ("hot", 0.1), ("lost_reward", math.nan), ("cycle_reward", math.inf),
     ],
 )  # fmt: skip
 def test_bad_parameters_of_learning_are_refused(name, value):
@@ -340,6 +372,7 @@ def test_bad_parameters_of_learning_are_refused(name, value):
         ({"vigilance": 0}, "vigilance"),
         ({"vigilance": 2.5}, "vigilance"),
         ({"sensing": "kalman"}, "sensing.*kalman"),
+        ({"task": "dance"}, "task must be 'ball' or 'goal', got 'dance'"),
         ({"rng": -1}, "rng"),
         ({"rng": 0.5}, "rng"),
     ],
@@ -405,6 +438,69 @@ def test_values_are_those_of_the_process_where_nothing_is_random(hold, explorati
     for row, place in enumerate(places.round().astype(int)):
         ideal = [forward[place], back[place], -50.0]
         assert learned.q.Q[row] == pytest.approx(ideal, abs=1e-6), place
+
+
+class Turret(gymnasium.Env):
+    """A goal in one of seven orientations .14 rad apart; only straight ahead does a kick score."""
+
+    observation_space = gymnasium.spaces.Box(
+        np.float32([-1, 0]), np.float32([1, 1]), dtype=np.float32
+    )
+    action_space = gymnasium.spaces.Discrete(3)
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.place = int(self.np_random.integers(-3, 4))
+        return self.look(), {}
+
+    def look(self):
+        return np.array([0.14 * self.place, 1], np.float32)
+
+    def step(self, action):
+        over, goal = action == 2, action == 2 and self.place == 0
+        self.place = int(np.clip(self.place + (-1, 1, 0)[action], -3, 3))
+        reward = (100.0 if goal else -100.0) if over else 0.0
+        return self.look(), reward, over, False, {"is_success": goal}
+
+
+def test_values_of_the_goal_problem_are_those_of_the_process_where_nothing_is_random():
+    law = Learning.goal(
+        patterns=200, exploration=6000, exploitation=0, gamma=0.9, alpha_power=0.0,
+        cycle_reward=-4.0,
+    )  # fmt: skip
+    sharp = Sensing(low=(-0.5,), high=(0.5,), A=[[1]], H=[[1]], Q=[[100]], R=[[1e-9]], P0=[[100]])
+    learned = Arkaq(0.06, task="goal", sensing=sharp, learning=law, rng=0)
+    learned.learn(Turret(), progress=False)
+    places = np.rint(learned.art.cluster_centers_[:, 0] / 0.28).astype(int)
+    assert sorted(places) == list(range(-3, 4))
+    best = {0: 96.0}
+    for n in (1, 2, 3):
+        best[n] = best[-n] = -4 + 0.9 * best[n - 1]
+    for row, place in enumerate(places.tolist()):
+        turned = [-4 + 0.9 * best[int(np.clip(place + by, -3, 3))] for by in (-1, 1)]
+        ideal = [*turned, 96.0 if place == 0 else -104.0]
+        assert learned.q.Q[row] == pytest.approx(ideal, abs=1e-3), place
+    seen = [learned.act(np.array([0.14 * n, 1.0])) for n in (0,)]
+    assert seen == [2]
+
+
+def test_one_class_learns_both_tasks_each_with_its_own_senses_and_schedule(brief):
+    scorer = brief_scorer()
+    assert (brief.task, scorer.task) == ("ball", "goal")
+    assert scorer.sensing == Sensing.goal() and brief.sensing == Sensing.consistent()
+    assert Arkaq(task="goal").learning == Learning.goal()
+    assert Arkaq().learning == Learning()
+    assert scorer.art.cluster_centers_.shape[1] == 1
+    assert digest(scorer) == digest(brief_scorer())
+
+
+def test_segmenting_first_and_learning_then_is_learning(brief):
+    in_two = Arkaq(0.2, learning=BRIEF, rng=4).segment(near_task(), progress=False)
+    assert in_two.q is None and in_two.art.counts_.sum() == BRIEF.patterns
+    centers = in_two.art.cluster_centers_.copy()
+    in_two.segment(near_task(), progress=False)
+    assert np.array_equal(in_two.art.cluster_centers_, centers), "segmented once"
+    assert digest(in_two.learn(near_task(), progress=False)) == digest(brief)
 
 
 def test_an_action_is_held_while_the_state_stays_but_not_for_ever():
@@ -558,6 +654,23 @@ def test_a_file_is_the_same_bytes_each_time_and_holds_no_code(brief, kept, tmp_p
     with np.load(kept, allow_pickle=False) as file:
         assert json.loads(str(file["settings"]))["format"] == 1
         assert np.array_equal(file["Q"], brief.q.Q)
+
+
+def test_a_scorer_is_kept_as_what_it_is(tmp_path):
+    scorer, path = brief_scorer(), tmp_path / "scorer.npz"
+    scorer.save(path)
+    loaded = Arkaq.load(path)
+    assert digest(loaded) == digest(scorer)
+    assert (loaded.task, loaded.learning) == ("goal", BRIEF_GOAL)
+    walker = Arkaq(0.06, sensing="goal", learning=BRIEF_GOAL, rng=4)
+    with pytest.raises(ValueError, match="another task"):
+        walker.learn(near_task(), path, progress=False)
+
+
+def test_the_file_of_the_ball_is_what_it_was_before_there_was_a_goal(tmp_path):
+    course = data_file("ball_approach.npz")
+    Arkaq.load(course).save(tmp_path / "again.npz")
+    assert (tmp_path / "again.npz").read_bytes() == course.read_bytes()
 
 
 def test_an_agent_that_has_not_learned_can_be_kept_too(tmp_path):

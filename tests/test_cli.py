@@ -17,14 +17,19 @@ def run(tmp_path, monkeypatch):
 @pytest.fixture
 def brief(monkeypatch):
     """Make every training short: what is tested is the command, not the learning."""
-    from arkaq_edu.experiments import approach
+    from arkaq_edu.experiments import approach, goal
 
     def short(seed, vigilance=0.1, **options):
         options["learning"] = Learning(patterns=300, exploration=500, exploitation=0)
         return long(seed, vigilance, **options)
 
-    long = approach.train
+    def short_goal(seed, vigilance=None, goal_distance="near", **options):
+        options["learning"] = Learning.goal(patterns=100, exploration=150, exploitation=0)
+        return long_goal(seed, vigilance, goal_distance, **options)
+
+    long, long_goal = approach.train, goal.train
     monkeypatch.setattr(approach, "train", short)
+    monkeypatch.setattr(goal, "train", short_goal)
     monkeypatch.setattr(experiments, "train", short, raising=False)
 
 
@@ -34,6 +39,25 @@ def test_train_leaves_an_agent_and_says_how_well_it_does(run, brief, tmp_path):
     agent = Arkaq.load(tmp_path / "mine.npz")
     assert (agent.seed, agent.vigilance) == (2, 0.2)
     assert f"{agent.art.n_clusters_} states" in answer.output
+
+
+def test_train_teaches_to_score_too_and_watch_films_it(run, brief, tmp_path):
+    answer = run("train", "score-goal", "--seed", 2, "--goal-distance", "far", "--out", "mine.npz")
+    assert answer.exit_code == 0, answer.output
+    agent = Arkaq.load(tmp_path / "mine.npz")
+    assert (agent.task, agent.seed, agent.vigilance) == ("goal", 2, 0.05)
+    assert f"{agent.art.n_clusters_} states; goals in" in answer.output
+    answer = run("watch", "mine.npz", "--orientation", 0.1, "--seed", 1)
+    assert answer.exit_code == 0, answer.output
+    assert (tmp_path / "shot.gif").read_bytes()[:3] == b"GIF"
+
+
+def test_watch_films_a_shot_of_the_courses_own_agent(run, tmp_path):
+    answer = run("watch", "score-goal", "--orientation", -0.2, "--out", "shot.html")
+    assert answer.exit_code == 0, answer.output
+    assert "after 1 turn" in answer.output
+    page = (tmp_path / "shot.html").read_text()
+    assert "the goal 0.20 rad right, 1 turn: a" in page and "://" not in page
 
 
 def test_train_refuses_a_file_that_holds_another_run(run, brief):
@@ -56,7 +80,11 @@ def test_watch_films_the_courses_own_agent(run, tmp_path):
     [
         (["train", "--vigilance", "-1"], "vigilance must be"),
         (["train", "--seed", "-1"], "--seed"),
-        (["watch", "no.npz"], "does not exist"),
+        (["watch", "no.npz"], "No such file"),
+        (["watch", "score-goal", "--orientation", "3"], "orientation must be"),
+        (["watch", "score-goal", "--goal-distance", "middle"], "--goal-distance"),
+        (["train", "dance"], "dance"),
+        (["train", "score-goal", "--kalman", "thesis"], "--kalman is of approach-ball"),
         (["watch", "--distance", "1e9"], "distance must be"),
         (["watch", "--out", "walk.txt"], ".gif"),
         (["watch", "begun.npz"], "agent must have learned"),
@@ -77,8 +105,8 @@ def test_reproduce_writes_a_page_that_opens_offline_and_a_table(run, brief, tmp_
     assert answer.exit_code == 0, answer.output
     table = pd.read_csv(tmp_path / "report" / "results.csv")
     assert table.columns.tolist() == ["quantity", "thesis", "mean", "low", "high", "seeds"]
-    assert table.thesis.dropna().tolist() == [137, 333, 519, 825, 1933]
+    assert table.thesis.dropna().tolist() == [137, 333, 519, 825, 1933, 9, 13, 18, 60, 35]
     page = (tmp_path / "report" / "index.html").read_text()
     assert "://" not in page
-    for number in ["5.5", "5.6", "5.7", "5.8", *(f"5.{n}" for n in range(10, 31))]:
-        assert f'id="figure-{number}"' in page
+    for number in [*range(5, 9), *range(10, 31), *range(34, 42)]:
+        assert f'id="figure-5.{number}"' in page

@@ -130,10 +130,12 @@ def test_a_result_is_the_mean_and_the_range_of_its_seeds():
 
 
 def test_results_do_not_depend_on_the_number_of_processes_and_are_taken_up(tmp_path):
+    brief_goal = Learning.goal(patterns=100, exploration=100, exploitation=0)
     options = {"seeds": 2, "approaches": 3, "progress": False, "learning": BRIEF}
+    options["goal_learning"] = brief_goal
     alone = results(jobs=1, folder=tmp_path, **options)
     kept = sorted((tmp_path / "agents").iterdir())
-    assert len(kept) == 4
+    assert len(kept) == 8
     stamps = [file.read_bytes() for file in kept]
     together = results(jobs=2, folder=tmp_path, **options)
     pd.testing.assert_frame_equal(alone, together)
@@ -177,7 +179,10 @@ def test_bad_input_is_refused_by_name(call, words):
 
 
 def test_figures_and_table_quote_the_same_numbers_of_the_thesis():
+    from arkaq_edu.figures import goal
     from arkaq_edu.figures.segmentation import THESIS_COUNTS
 
-    printed = thesis_numbers()
-    assert {f"centres, vigilance {rho:g}": n for rho, n in THESIS_COUNTS.items()} == dict(printed)
+    quoted = {f"centres, vigilance {rho:g}": n for rho, n in THESIS_COUNTS.items()}
+    quoted |= {f"goal centres, vigilance {rho:g}": n for rho, n in goal.THESIS_COUNTS.items()}
+    quoted |= {f"goals (%), near, {who}": n for who, n in goal.THESIS_RATES.items()}
+    assert quoted == dict(thesis_numbers())

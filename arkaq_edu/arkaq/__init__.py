@@ -1,14 +1,22 @@
 """The ARKAQ agent: senses (Kalman filter), states (ART network), values (Q-learning).
 
-Thesis chapter 3, 5.2.1 and 5.2.2.
+Thesis chapter 3, 5.2 and 5.3.
 """
 
 from arkaq_edu.arkaq.agent import Arkaq
-from arkaq_edu.arkaq.automata import Q_LEARNING, SEGMENTATION, Automaton
+from arkaq_edu.arkaq.automata import (
+    GOAL_Q_LEARNING,
+    GOAL_SEGMENTATION,
+    Q_LEARNING,
+    SEGMENTATION,
+    Automaton,
+)
 from arkaq_edu.arkaq.learning import Learning
 from arkaq_edu.arkaq.sensing import Estimator, Sensing
 
 __all__ = [
+    "GOAL_Q_LEARNING",
+    "GOAL_SEGMENTATION",
     "Q_LEARNING",
     "SEGMENTATION",
     "Arkaq",

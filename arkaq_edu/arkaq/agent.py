@@ -5,16 +5,22 @@ from __future__ import annotations
 import json
 import os
 import time
-from dataclasses import asdict
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from tqdm.auto import tqdm
 
 from arkaq_edu import _checks
-from arkaq_edu.arkaq.automata import Q_LEARNING, SEGMENTATION
+from arkaq_edu.arkaq.automata import (
+    GOAL_Q_LEARNING,
+    GOAL_SEGMENTATION,
+    Q_LEARNING,
+    SEGMENTATION,
+    Automaton,
+)
 from arkaq_edu.arkaq.learning import Learning
 from arkaq_edu.arkaq.sensing import Estimator, Sensing
 from arkaq_edu.art import EuclideanART
@@ -39,10 +45,15 @@ class Arkaq:
     ----------
     vigilance : float
         The ART network's vigilance, a distance between scaled patterns, in (0, 2].
-    sensing : {"consistent", "thesis"} or Sensing
-        The Kalman filter's settings and the intervals of the measurements.
+    task : {"ball", "goal"}
+        The problem: it decides which automata the agent runs, and what the next two arguments
+        are by default.
+    sensing : {"consistent", "thesis", "goal"} or Sensing, optional
+        The Kalman filter's settings and the intervals of the measurements: by default
+        "consistent" for the ball, "goal" for the goal.
     learning : Learning, optional
-        All that the thesis leaves open: schedules, discount, numbers of patterns and cycles.
+        All that the thesis leaves open: schedules, discount, numbers of patterns and cycles; by
+        default ``Learning()`` for the ball, ``Learning.goal()`` for the goal.
     rng : int or numpy.random.Generator, optional
         The seed of everything the agent draws and of every episode it starts.
 
@@ -59,7 +70,8 @@ class Arkaq:
 
     References
     ----------
-    Thesis chapter 3 (figures 3.1 and 3.2), 5.2.1 and 5.2.2 (figures 5.6 and 5.15).
+    Thesis chapter 3 (figures 3.1 and 3.2), 5.2 (figures 5.6 and 5.15) and 5.3 (figures 5.34 and
+    5.38).
     Sardag and Akin, ARKAQ-Learning, ISCIS 2005.
     Lin, Self-improving reactive agents based on reinforcement learning, planning and teaching,
     Machine Learning 8, 1992 (backing an episode up from its end).
@@ -75,26 +87,44 @@ class Arkaq:
     >>> agent.reset()
     >>> agent.act(observation) in (0, 1, 2)
     True
+
+    The same class learns to score.
+
+    >>> env = gymnasium.make("arkaq_edu:ScoreGoal-v0")
+    >>> short = Learning.goal(patterns=200, exploration=200, exploitation=0)
+    >>> agent = Arkaq(0.06, task="goal", learning=short, rng=0).learn(env, progress=False)
+    >>> agent.q.Q.shape[1]
+    3
     """
 
     def __init__(
         self,
         vigilance: float = 0.1,
         *,
-        sensing: Sensing | Literal["consistent", "thesis"] = "consistent",
+        task: Literal["ball", "goal"] = "ball",
+        sensing: Sensing | Literal["consistent", "thesis", "goal"] | None = None,
         learning: Learning | None = None,
         rng: int | np.random.Generator | None = None,
     ) -> None:
         self.vigilance = _checks.number("vigilance", vigilance, 0, 2, open_low=True)
-        if isinstance(sensing, str):
-            presets = {"consistent": Sensing.consistent, "thesis": Sensing.thesis}
-            if sensing not in presets:
+        if task not in _TASKS:
+            raise ValueError(f"task must be 'ball' or 'goal', got {task!r}")
+        self.task = task
+        usual = _TASKS[task]
+        presets = {
+            "consistent": Sensing.consistent,
+            "thesis": Sensing.thesis,
+            "goal": Sensing.goal,
+        }
+        settings = usual.sensing if sensing is None else sensing
+        if isinstance(settings, str):
+            if settings not in presets:
                 raise ValueError(
-                    f"sensing must be 'consistent', 'thesis' or a Sensing, got {sensing!r}"
+                    f"sensing must be {', '.join(map(repr, presets))} or a Sensing, got {sensing!r}"
                 )
-            sensing = presets[sensing]()
-        self.sensing = sensing
-        self.learning = learning or Learning()
+            settings = presets[settings]()
+        self.sensing: Sensing = settings
+        self.learning = learning or usual.learning()
         # A generator is asked once: episodes then have seeds of their own, so that a run that is
         # taken up again draws what it would have drawn.
         if rng is None or isinstance(rng, np.random.Generator):
@@ -111,7 +141,7 @@ class Arkaq:
     # Acting -----------------------------------------------------------------------------------
 
     def reset(self) -> None:
-        """Begin a new episode: forget where the ball was."""
+        """Begin a new episode: forget where the ball, or the goal, was."""
         self._senses.reset()
         self._last_action: int | None = None
 
@@ -175,23 +205,46 @@ class Arkaq:
         ValueError
             If `checkpoint` holds another run: other settings or another seed.
         RuntimeError
-            If the ball is never seen.
+            If what is to be seen, the ball or the goal, never is.
+        """
+        self.segment(env, checkpoint, progress)
+        keeper = _Keeper(self, checkpoint)
+        if self._phase == _LEARNING:
+            if self.q is None:
+                n_actions = int(env.action_space.n)  # type: ignore[attr-defined]
+                self.q = self._new_q(n_actions)
+            _TASKS[self.task].q_learning(self, env, keeper, progress).run()
+            self._phase = _FINISHED
+        self.reset()
+        keeper.keep()
+        return self
+
+    def segment(
+        self,
+        env: gymnasium.Env,
+        checkpoint: str | os.PathLike[str] | None = None,
+        progress: bool = True,
+    ) -> Arkaq:
+        """Segment the world and stop there; `learn` goes on, in the same or another environment.
+
+        Parameters
+        ----------
+        env, checkpoint, progress
+            As for `learn`.
+
+        Returns
+        -------
+        Arkaq
+            The agent itself. An agent that has segmented its world already is left as it is.
         """
         if checkpoint is not None and Path(checkpoint).exists():
             self._resume(Path(checkpoint))
         keeper = _Keeper(self, checkpoint)
         keeper.keep()
         if self._phase == _SEGMENTING:
-            _Segmentation(self, env, keeper, progress).run()
+            _TASKS[self.task].segmentation(self, env, keeper, progress).run()
             self._phase, self._done_in_phase = _LEARNING, 0
-        if self._phase == _LEARNING:
-            if self.q is None:
-                n_actions = int(env.action_space.n)  # type: ignore[attr-defined]
-                self.q = self._new_q(n_actions)
-            _QLearning(self, env, keeper, progress).run()
-            self._phase = _FINISHED
-        self.reset()
-        keeper.keep()
+            keeper.keep()
         return self
 
     def _new_q(self, n_actions: int) -> QLearner:
@@ -213,11 +266,13 @@ class Arkaq:
             "vigilance": self.vigilance,
             "seed": self.seed,
             "sensing": self.sensing.to_json(),
-            "learning": asdict(self.learning),
+            "learning": self.learning.to_json(),
             "phase": self._phase,
             "done_in_phase": self._done_in_phase,
             "cycles": self.cycles,
         }
+        if self.task != "ball":  # files older than the second task do not name the first
+            settings["task"] = self.task
         # NumPy's numbers are as good as Python's as settings, but not to JSON.
         text = json.dumps(settings, default=lambda number: number.item())
         arrays: dict[str, Any] = {"settings": np.array(text)}
@@ -260,6 +315,7 @@ class Arkaq:
                 raise ValueError(f"format must be {FORMAT}, got {settings['format']!r}")
             agent = cls(
                 settings["vigilance"],
+                task=settings.get("task", "ball"),
                 sensing=Sensing.from_json(settings["sensing"]),
                 learning=Learning(**settings["learning"]),
                 rng=settings["seed"],
@@ -295,7 +351,7 @@ class Arkaq:
 
     def _resume(self, path: Path) -> None:
         kept = Arkaq.load(path)
-        for name in ("vigilance", "seed", "learning", "sensing"):
+        for name in ("task", "vigilance", "seed", "learning", "sensing"):
             if getattr(kept, name) != getattr(self, name):
                 raise ValueError(
                     f"checkpoint {path} holds a run with another {name}: "
@@ -323,12 +379,15 @@ class _Keeper:
 
 
 class _Phase:
-    """What both phases share: episodes that begin at the supervisor, and the looks at the world.
+    """What all phases share: episodes that begin at the supervisor, and the looks at the world.
+
+    A phase runs its automaton: the work of each of its states is the method of that name.
 
     Every episode has a random stream of its own, made of the agent's seed, the phase and the
     episode's number. So nothing but the learned arrays must be kept to take up a run.
     """
 
+    automaton: Automaton
     name: str
     number: int
     unit: str
@@ -349,6 +408,9 @@ class _Phase:
     @property
     def total(self) -> int:
         raise NotImplementedError
+
+    def run(self) -> None:
+        self.automaton.run({state: getattr(self, state) for state in self.automaton.states})
 
     def supervisor(self) -> str:
         """Close the episode that ended, keep the run, and reset the world."""
@@ -383,6 +445,7 @@ class _Phase:
 class _Segmentation(_Phase):
     """Figure 5.6: random actions; every sighting is a pattern for the network."""
 
+    automaton = SEGMENTATION
     name, number, unit = _SEGMENTING, 0, " patterns"
     blind = 0
 
@@ -390,25 +453,16 @@ class _Segmentation(_Phase):
     def total(self) -> int:
         return self.law.patterns
 
-    def run(self) -> None:
-        SEGMENTATION.run(
-            {
-                "supervisor": self.supervisor,
-                "observe": self.observe,
-                "unknown": self.unknown,
-                "network": self.network,
-                "act": self.act,
-            }
-        )
-
     def observe(self) -> str:
-        return "ball seen" if self.observation[-1] else "no ball"
+        sought = self.agent.task
+        return f"{sought} seen" if self.observation[-1] else f"no {sought}"
 
     def unknown(self) -> str:
         """Give a blind robot up, for it would ask for resets for ever."""
         self.blind += 1
         if self.blind == _MOST_BLIND_LOOKS:
-            raise RuntimeError(f"the ball was not seen in {self.blind} looks in a row")
+            sought = self.agent.task
+            raise RuntimeError(f"the {sought} was not seen in {self.blind} looks in a row")
         return "ask for reset"
 
     def network(self) -> str:
@@ -429,6 +483,7 @@ class _Segmentation(_Phase):
 class _QLearning(_Phase):
     """Figure 5.15: explore what was never tried, later exploit what is known."""
 
+    automaton = Q_LEARNING
     name, number, unit = _LEARNING, 1, " cycles"
 
     @property
@@ -439,16 +494,7 @@ class _QLearning(_Phase):
         assert self.agent.q is not None
         self.q, self.category = self.agent.q, self.agent.art.category
         self.experiences: list[tuple[int, int, float, int, bool, int]] = []
-        Q_LEARNING.run(
-            {
-                "supervisor": self.supervisor,
-                "identify": self.identify,
-                "explore": self.explore,
-                "exploit": self.exploit,
-                "act": self.act,
-                "evaluate": self.evaluate,
-            }
-        )
+        super().run()
 
     def supervisor(self) -> str:
         event = super().supervisor()
@@ -478,7 +524,7 @@ class _QLearning(_Phase):
         return "action chosen"
 
     def act(self) -> str:
-        reward = self.step(self.action)
+        reward = self.step(self.action) + self.law.cycle_reward
         self.discounted += self.law.gamma**self.held * reward
         self.held += 1
         self.agent._done_in_phase += 1
@@ -509,3 +555,41 @@ class _QLearning(_Phase):
         for experience in reversed(self.experiences):
             self.q.update(*experience)
         return "episode over"
+
+
+class _GoalSegmentation(_Segmentation):
+    """Figure 5.34: as figure 5.6, with turns for footsteps."""
+
+    automaton = GOAL_SEGMENTATION
+
+    def turn(self) -> str:
+        event = self.act()
+        return "turned" if event == "moved" else event
+
+
+class _GoalQLearning(_QLearning):
+    """Figure 5.38: as figure 5.15, but no action is held, and the supervisor judges the kick."""
+
+    automaton = GOAL_Q_LEARNING
+
+    def act(self) -> str:
+        event = super().act()
+        return event if event == "episode over" else "turned"
+
+    def judge(self) -> str:
+        return "goal" if self.success else "no goal"
+
+
+class _Task(NamedTuple):
+    """The phases of a problem, and how an agent senses and learns in it if not told."""
+
+    segmentation: type[_Segmentation]
+    q_learning: type[_QLearning]
+    sensing: str
+    learning: Callable[[], Learning]
+
+
+_TASKS = {
+    "ball": _Task(_Segmentation, _QLearning, "consistent", Learning),
+    "goal": _Task(_GoalSegmentation, _GoalQLearning, "goal", Learning.goal),
+}

@@ -75,3 +75,39 @@ Q_LEARNING = Automaton(
         ("evaluate", "episode over"): "supervisor",
     },
 )
+
+# Figure 5.34. The robot only looks about: a kick would tell nothing of where the goal can be.
+GOAL_SEGMENTATION = Automaton(
+    "supervisor",
+    {
+        ("supervisor", "reset"): "observe",
+        ("supervisor", "enough"): DONE,
+        ("observe", "goal seen"): "network",
+        ("observe", "no goal"): "unknown",
+        ("unknown", "ask for reset"): "supervisor",
+        ("network", "category updated"): "turn",
+        ("network", "category created"): "turn",
+        ("turn", "turned"): "observe",
+        ("turn", "period over"): "supervisor",
+    },
+)
+
+# Figure 5.38, which the thesis captions "segmentation". No action is held, for every turn leaves
+# its state; and when the episode is over the supervisor judges where the ball has come to rest.
+GOAL_Q_LEARNING = Automaton(
+    "supervisor",
+    {
+        ("supervisor", "reset"): "identify",
+        ("supervisor", "enough"): DONE,
+        ("identify", "exploration"): "explore",
+        ("identify", "exploitation"): "exploit",
+        ("explore", "action chosen"): "act",
+        ("exploit", "action chosen"): "act",
+        ("act", "turned"): "evaluate",
+        ("act", "episode over"): "judge",
+        ("judge", "goal"): "evaluate",
+        ("judge", "no goal"): "evaluate",
+        ("evaluate", "next"): "identify",
+        ("evaluate", "episode over"): "supervisor",
+    },
+)

@@ -2,9 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 from arkaq_edu import _checks
+
+_GOAL: dict[str, Any] = {
+    "patterns": 2000,
+    "period": 50,
+    "exploration": 600,
+    "exploitation": 5400,
+    "hold": 1,
+    "gamma": 0.95,
+    "alpha_least": 0.015,
+    "hot": 40.0,
+    "cold": 4.0,
+    "cycle_reward": -10.0,
+}
 
 
 @dataclass(frozen=True)
@@ -37,6 +51,14 @@ class Learning:
     lost_reward : float
         What losing the ball for good is worth. Zero: nothing more can be earned then, which is
         punishment enough under a discount.
+    cycle_reward : float
+        What each cycle is worth beside what the task pays. Where the best kick is worth less than
+        nothing (under half of them score, and a miss costs as much as a goal earns), a discount
+        alone would have the robot turn for ever; a cycle that costs something has it kick.
+
+    Notes
+    -----
+    The defaults are for the ball; `goal` returns those for the goal.
 
     Examples
     --------
@@ -57,6 +79,7 @@ class Learning:
     hot: float = 10.0
     cold: float = 0.5
     lost_reward: float = 0.0
+    cycle_reward: float = 0.0
 
     def __post_init__(self) -> None:
         _checks.number("learning_rate", self.learning_rate, 0, 1, open_low=True)
@@ -70,6 +93,23 @@ class Learning:
         _checks.number("cold", self.cold, 0, open_low=True)
         _checks.number("hot", self.hot, self.cold)
         _checks.number("lost_reward", self.lost_reward)
+        _checks.number("cycle_reward", self.cycle_reward)
+
+    @classmethod
+    def goal(cls, **changes: Any) -> Learning:
+        """Return the parameters for the goal problem, some of them changed.
+
+        A kick says little, for the best still misses four times in ten: so the values average
+        over more visits (`alpha_least`), and the temperature starts higher and stays so. No action
+        is held, for every turn leaves its state. The robot looks about in long periods, see
+        `arkaq_edu.experiments.goal.record_orientations`.
+
+        Examples
+        --------
+        >>> Learning.goal(patterns=500).patterns
+        500
+        """
+        return cls(**_GOAL | changes)
 
     def alpha(self, visit: int) -> float:
         """Return the learning rate of the n-th visit, n = 1, 2, ..."""
@@ -78,3 +118,13 @@ class Learning:
     def temperature(self, progress: float) -> float:
         """Return the temperature at a fraction in [0, 1] of exploitation."""
         return self.hot * (self.cold / self.hot) ** progress
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the parameters by name.
+
+        A `cycle_reward` of zero is left out: files written before there was one stay as they are.
+        """
+        kept = asdict(self)
+        if not self.cycle_reward:
+            del kept["cycle_reward"]
+        return kept

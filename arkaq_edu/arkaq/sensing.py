@@ -32,8 +32,9 @@ class Sensing:
 
     Notes
     -----
-    `thesis` holds the numbers of section 5.2. `consistent` holds numbers measured on the field,
-    with which the filter's innovations are as large as it believes them to be.
+    `thesis` holds the numbers of section 5.2. `consistent` (for the ball) and `goal` hold numbers
+    measured on the field, with which the filter's innovations are as large as it believes them to
+    be.
     """
 
     low: tuple[float, ...]
@@ -101,6 +102,24 @@ class Sensing:
             range_noise=7.4e-6,
         )
 
+    @classmethod
+    def goal(cls) -> Sensing:
+        """Return settings measured on the field for the goal: one measurement, its orientation.
+
+        A turn to the left moves the goal to the right. `arkaq_edu.experiments.goal.calibrate`
+        measures `B`, `Q` and `R`, and a test compares.
+        """
+        return cls(
+            (-0.5,),
+            (0.5,),
+            A=[[1.0]],
+            H=[[1.0]],
+            Q=[[0.0026**2]],
+            R=[[0.00095**2]],
+            P0=[[0.5**2]],
+            B=[[-0.148, 0.148, 0.0]],
+        )
+
     def filter(self) -> KalmanFilter:
         """Return the Kalman filter with these settings, its prior in the middle of the interval."""
         x0 = np.zeros(len(np.asarray(self.A)))
@@ -157,7 +176,7 @@ class Sensing:
 
 @dataclass
 class Estimator:
-    """The senses at work: a running estimate of where the ball is.
+    """The senses at work: a running estimate of where the ball, or the goal, is.
 
     Parameters
     ----------
@@ -182,7 +201,7 @@ class Estimator:
         self._inputs = None if B is None else np.eye(np.asarray(B).shape[1])
 
     def reset(self) -> None:
-        """Forget: the supervisor has moved the ball."""
+        """Forget: the supervisor has reset the world."""
         self.kalman.reset()
 
     def observe(self, observation: NDArray[np.floating], action: int | None) -> NDArray[np.float64]:

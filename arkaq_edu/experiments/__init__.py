@@ -2,6 +2,7 @@
 
 - `streams`: sightings recorded on the field, and what they say of the senses;
 - `approach`: training, walking to the ball, and how well it is done;
+- `goal`: training, kicking, and how well it is done: the second problem;
 - `reproduce`: thesis against here, over many seeds;
 - `kicks`: kicks of a real robot, and simulated ones.
 """
@@ -10,6 +11,7 @@ import lazy_loader as _lazy
 
 __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
+    submodules=["goal"],
     submod_attrs={
         "approach": [
             "STARTS",

@@ -1,4 +1,4 @@
-"""Thesis against here: every number it prints of the ball problem, and what is measured beside."""
+"""Thesis against here: every number it prints of its problems, and what is measured beside."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from tqdm.auto import tqdm
 from arkaq_edu import _checks
 from arkaq_edu._paths import data_file
 from arkaq_edu.arkaq import Estimator, Learning, Sensing
-from arkaq_edu.experiments import approach, streams
+from arkaq_edu.experiments import approach, goal, streams
 from arkaq_edu.field import World
 
 VIGILANCE = 0.1
 
 
 def thesis_numbers() -> pd.Series:
-    """Return the numbers the thesis prints of the ball problem, by quantity.
+    """Return the numbers the thesis prints of its two problems, by quantity.
 
     Examples
     --------
@@ -43,15 +43,25 @@ def load_study() -> pd.DataFrame:
     return pd.read_csv(data_file("approach_study.csv"))
 
 
-def agent_file(folder: str | os.PathLike[str], sensing: str, seed: int) -> Path:
+def agent_file(folder: str | os.PathLike[str], kind: str, seed: int) -> Path:
     """Return where `results` keeps one of its agents.
+
+    Parameters
+    ----------
+    folder : path
+        Where `results` keeps them.
+    kind : {"consistent", "thesis", "near", "far"}
+        With which Kalman filter it walks to the ball, or from where it scores.
+    seed : int
+        Its seed.
 
     Examples
     --------
     >>> agent_file("out", "thesis", 3).as_posix()
     'out/agents/ball-thesis-seed03.npz'
     """
-    return Path(folder) / "agents" / f"ball-{sensing}-seed{seed:02d}.npz"
+    task = "goal" if kind in goal.VIGILANCE else "ball"
+    return Path(folder) / "agents" / f"{task}-{kind}-seed{seed:02d}.npz"
 
 
 def results(
@@ -61,24 +71,25 @@ def results(
     jobs: int = -1,
     progress: bool = True,
     learning: Learning | None = None,
+    goal_learning: Learning | None = None,
 ) -> pd.DataFrame:
-    """Run the ball problem over many seeds and set it against the thesis.
+    """Run both problems over many seeds and set them against the thesis.
 
     Parameters
     ----------
     seeds : int
         How many seeds; each has its own stream, its own training and its own fresh starts.
     approaches : int
-        Approaches by which each policy of each seed is judged, uniform over the visible field
-        from 600 to 4100 mm.
+        Approaches, and kicks, by which each policy of each seed is judged; approaches begin
+        uniform over the visible field from 600 to 4100 mm.
     folder : path, optional
         Where to keep the trained agents, so that an interrupted run goes on where it was.
     jobs : int
         Processes at once; -1 for one a core.
     progress : bool
         Whether to show a progress bar.
-    learning : Learning, optional
-        Schedules and lengths of the trainings.
+    learning, goal_learning : Learning, optional
+        Schedules and lengths of the trainings for the ball, and for the goal.
 
     Returns
     -------
@@ -92,12 +103,12 @@ def results(
 
     References
     ----------
-    Thesis 5.1.3.1, 5.2; figures 5.5, 5.10-5.14, 5.16-5.30.
+    Thesis 5.1.3.1, 5.2, 5.3; figures 5.5, 5.10-5.14, 5.16-5.30, 5.35-5.37, 5.39-5.41.
 
     Examples
     --------
     >>> brief = Learning(patterns=200, exploration=200, exploitation=0)
-    >>> table = results(seeds=1, approaches=2, jobs=1, progress=False, learning=brief)
+    >>> table = results(1, 2, jobs=1, progress=False, learning=brief, goal_learning=brief)
     >>> table.columns.tolist()
     ['quantity', 'thesis', 'mean', 'low', 'high', 'seeds']
     """
@@ -109,6 +120,9 @@ def results(
         tasks += [delayed(_stream)(seed), delayed(_references)(seed, approaches)]
         for sensing in ("consistent", "thesis"):
             tasks.append(delayed(_training)(seed, sensing, approaches, folder, learning))
+        tasks.append(delayed(_orientations)(seed))
+        for distance in goal.VIGILANCE:
+            tasks.append(delayed(_goals)(seed, distance, approaches, folder, goal_learning))
     done = Parallel(n_jobs=jobs, return_as="generator_unordered")(tasks)
     bar = tqdm(done, total=len(tasks), desc="reproduce", unit=" runs", disable=not progress)
     return summary(pd.DataFrame(_flatten(bar)))
@@ -224,20 +238,55 @@ def _training(
     folder: str | os.PathLike[str] | None,
     learning: Learning | None,
 ) -> tuple[int, dict[str, float]]:
-    checkpoint = None
-    if folder is not None:
-        checkpoint = agent_file(folder, sensing, seed)
-        checkpoint.parent.mkdir(parents=True, exist_ok=True)
     agent = approach.train(
         seed,
         VIGILANCE,
         sensing=sensing,
         learning=learning,
-        checkpoint=checkpoint,
+        checkpoint=_checkpoint(folder, sensing, seed),
         progress=False,
     )
     who = f"ARKAQ, {sensing} Kalman filter"
     return seed, _judged(who, approach.greedy(agent), approaches, seed)
+
+
+def _checkpoint(folder: str | os.PathLike[str] | None, kind: str, seed: int) -> Path | None:
+    if folder is None:
+        return None
+    path = agent_file(folder, kind, seed)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    return path
+
+
+def _orientations(seed: int) -> tuple[int, dict[str, float]]:
+    counts = goal.centre_counts([seed]).loc[seed]
+    return seed, {f"goal centres, vigilance {rho:g}": float(n) for rho, n in counts.items()}
+
+
+def _goals(
+    seed: int,
+    distance: goal.Distance,
+    kicks: int,
+    folder: str | os.PathLike[str] | None,
+    learning: Learning | None,
+) -> tuple[int, dict[str, float]]:
+    agent = goal.train(
+        seed,
+        goal_distance=distance,
+        learning=learning,
+        checkpoint=_checkpoint(folder, distance, seed),
+        progress=False,
+    )
+    policies = {
+        "ARKAQ": approach.greedy(agent),
+        "random actions": goal.at_random(seed),
+        "planner that sees the truth": goal.oracle(),
+    }
+    return seed, {
+        f"goals (%), {distance}, {who}": 100
+        * float(goal.shots(policy, kicks, distance, 10_000 + seed).is_success.mean())
+        for who, policy in policies.items()
+    }
 
 
 def _references(seed: int, approaches: int) -> tuple[int, dict[str, float]]:

@@ -8,12 +8,12 @@ import lazy_loader as _lazy
 __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
     submodules=[
-        "animation", "art", "automata", "belief", "diagram", "distance", "field", "gallery",
+        "animation", "art", "automata", "belief", "diagram", "distance", "field", "gallery", "goal",
         "kalman", "learning", "mdp", "policy", "pomdp", "scenes", "segmentation", "style",
         "trajectories",
     ],
     submod_attrs={
-        "animation": ["MovingWalk", "animate_walk", "save_walk"],
+        "animation": ["MovingWalk", "animate_shot", "animate_walk", "save_shot", "save_walk"],
         "gallery": ["FIGURES", "draw"],
     },
 )  # fmt: skip

@@ -1,19 +1,23 @@
-"""The robot on its way to the ball, as a moving picture: GIF, web page, or in a notebook."""
+"""The robot at work, as a moving picture: GIF, web page, or in a notebook."""
 
 from __future__ import annotations
 
 import os
 import re
 import tempfile
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
 
 from ..envs.ball_approach import ACTIONS
+from ..envs.score_goal import ACTIONS as GOAL_ACTIONS
 from ..experiments import Walk
+from ..experiments.goal import Shot
 from ..field import Camera, World, bird_view
 from ..field.view import EXTENT
 from . import style
@@ -132,11 +136,88 @@ def save_walk(walk: Walk, path: str | os.PathLike[str]) -> None:
     Traceback (most recent call last):
     ValueError: path must end in .gif or .html, got 'walk.avi'
     """
+    _save(animate_walk, walk, how_it_went(walk), path)
+
+
+def animate_shot(shot: Shot) -> FuncAnimation:
+    """Show how the robot aims and kicks, from above.
+
+    Parameters
+    ----------
+    shot : Shot
+        As `arkaq_edu.experiments.goal.shoot` returns it.
+
+    Returns
+    -------
+    matplotlib.animation.FuncAnimation
+        ``to_jshtml()`` and ``save(path)`` render it.
+
+    Examples
+    --------
+    >>> from arkaq_edu.experiments import goal
+    >>> shot = goal.shoot(goal.load_agent(), orientation=0.1)
+    >>> page = animate_shot(shot).to_jshtml()
+    >>> page.count("data:image/png") == len(shot.frames)
+    True
+    """
+    figure = Figure(figsize=(5.0, 4.0), dpi=_DPI)
+    ax = style.axes(figure.add_axes((0.01, 0.09, 0.98, 0.83)))
+    ax.axis("off")
+    figure.text(0.01, 0.98, how_the_shot_went(shot), va="top", color=style.INK)
+    caption = figure.text(0.01, 0.02, "", va="bottom", color=style.INK)
+    above = ax.imshow(shot.frames[0], extent=EXTENT)
+
+    def show(frame: int) -> None:
+        above.set_data(shot.frames[frame])
+        row = shot.table.iloc[shot.looks[frame]]
+        then = GOAL_ACTIONS[int(row.action)] if row.action >= 0 else "the end"
+        caption.set_text(
+            f"estimate {row.estimated_orientation:+.2f} rad, state {row.category:.0f}: {then}"
+        )
+
+    pause = 1000 // FRAMES_PER_SECOND
+    return FuncAnimation(figure, show, frames=len(shot.frames), interval=pause, blit=False)
+
+
+def how_the_shot_went(shot: Shot) -> str:
+    """Say from where the robot aimed, and what came of it.
+
+    Examples
+    --------
+    >>> from arkaq_edu.experiments import goal
+    >>> how_the_shot_went(goal.shoot(goal.load_agent(), 0.1)).split(",")[0]
+    'the goal 0.10 rad left'
+    """
+    start, turns = shot.table.orientation.iloc[0], int((shot.table.action.isin((0, 1))).sum())
+    side = "left" if start > 0 else "right"
+    end = "a goal" if shot.is_success else "a miss"
+    return f"the goal {abs(start):.2f} rad {side}, {turns} turn{'s' * (turns != 1)}: {end}"
+
+
+def save_shot(shot: Shot, path: str | os.PathLike[str]) -> None:
+    """Write the film of a shot to a file, as `save_walk` does.
+
+    Parameters
+    ----------
+    shot : Shot
+        The shot.
+    path : path
+        Ends in ".gif" or ".html"; it is replaced.
+
+    Raises
+    ------
+    ValueError
+        If it ends otherwise.
+    """
+    _save(animate_shot, shot, how_the_shot_went(shot), path)
+
+
+def _save(animate: Callable[[Any], FuncAnimation], what: Any, title: str, path) -> None:
     ending = Path(path).suffix.lower()
     if ending == ".gif":
-        animate_walk(walk).save(Path(path), PillowWriter(FRAMES_PER_SECOND), dpi=_DPI)
+        animate(what).save(Path(path), PillowWriter(FRAMES_PER_SECOND), dpi=_DPI)
     elif ending == ".html":
-        Path(path).write_text(_page(walk), encoding="utf-8")
+        Path(path).write_text(_page(animate(what), title), encoding="utf-8")
     else:
         raise ValueError(f"path must end in .gif or .html, got {os.fspath(path)!r}")
 
@@ -176,12 +257,12 @@ def _on_field(look, distance: float, orientation: float) -> tuple[list[float], l
     return [look.x + distance * np.cos(angle)], [look.y + distance * np.sin(angle)]
 
 
-def _page(walk: Walk) -> str:
+def _page(animation: FuncAnimation, title: str) -> str:
     """Return matplotlib's page, but the same in every run, and with signs that need no network."""
-    page = animate_walk(walk).to_jshtml(FRAMES_PER_SECOND, embed_frames=True)
+    page = animation.to_jshtml(FRAMES_PER_SECOND, embed_frames=True)
     page = re.sub(r"<link[^>]*font-awesome[^>]*>", "", page)
     page = re.sub(r"(anim|_anim_\w*?)[0-9a-f]{32}", r"\1_walk", page)
     signs = "".join(f'.fa-{name}::before {{content: "{sign}"}}\n' for name, sign in _SIGNS.items())
     flip = ".fa-flip-horizontal {display: inline-block; transform: scaleX(-1)}\n"
-    head = f'<!doctype html>\n<meta charset="utf-8">\n<title>{how_it_went(walk)}</title>\n'
+    head = f'<!doctype html>\n<meta charset="utf-8">\n<title>{title}</title>\n'
     return f"{head}<style>\n.fa {{font-style: normal}}\n{signs}{flip}</style>\n{page}"

@@ -1,8 +1,8 @@
-"""Figures 5.6 and 5.15: the automata, drawn from the very tables that the agent runs.
+"""Figures 5.6, 5.15, 5.34 and 5.38: the automata, drawn from the tables that the agent runs.
 
 References
 ----------
-Thesis, sections 5.2.1 and 5.2.2.
+Thesis, sections 5.2.1, 5.2.2, 5.3.1 and 5.3.2.
 
 Examples
 --------
@@ -21,7 +21,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 from matplotlib.text import Text
 
-from ..arkaq import Q_LEARNING, SEGMENTATION, Automaton
+from ..arkaq import GOAL_Q_LEARNING, GOAL_SEGMENTATION, Q_LEARNING, SEGMENTATION, Automaton
 from ..arkaq.automata import DONE
 from . import style
 
@@ -43,6 +43,12 @@ Q_LEARNING_PLACES = {
     "evaluate": (5.0, -1.2),
     DONE: (0.0, 1.9),
 }
+GOAL_SEGMENTATION_PLACES = {
+    "turn" if state == "act" else state: place for state, place in SEGMENTATION_PLACES.items()
+}
+GOAL_Q_LEARNING_PLACES = Q_LEARNING_PLACES | {"act": (6.8, 0.4), "judge": (6.8, -1.2)} | {
+    "explore": (4.1, 1.6), "exploit": (4.1, 0.4), "identify": (1.4, 0.7), "evaluate": (3.6, -1.2),
+}  # fmt: skip
 _WIDTH, _HEIGHT = 1.3, 0.42
 _FILL = style.CELLS[0]
 
@@ -133,6 +139,18 @@ def figure_5_15(ax: Axes | None = None) -> AutomatonPlot:
     """Draw figure 5.15, the automaton of exploration, and of exploitation with it."""
     title = _fact("Q-learning", Q_LEARNING)
     return plot_automaton(Q_LEARNING, Q_LEARNING_PLACES, ax, title=title)
+
+
+def figure_5_34(ax: Axes | None = None) -> AutomatonPlot:
+    """Draw figure 5.34, the automaton of the goal's segmentation; see `plot_automaton`."""
+    title = _fact("segmentation", GOAL_SEGMENTATION)
+    return plot_automaton(GOAL_SEGMENTATION, GOAL_SEGMENTATION_PLACES, ax, title=title)
+
+
+def figure_5_38(ax: Axes | None = None) -> AutomatonPlot:
+    """Draw figure 5.38, the automaton of the goal's Q-learning (captioned segmentation)."""
+    title = _fact("Q-learning", GOAL_Q_LEARNING)
+    return plot_automaton(GOAL_Q_LEARNING, GOAL_Q_LEARNING_PLACES, ax, title=title)
 
 
 def _fact(name: str, automaton: Automaton) -> str:

@@ -20,6 +20,7 @@ from . import (
     belief,
     distance,
     field,
+    goal,
     kalman,
     learning,
     mdp,
@@ -42,6 +43,7 @@ _ROOMS = (
     segmentation,
     policy,
     trajectories,
+    goal,
     belief,
     pomdp,
 )
