@@ -252,7 +252,7 @@ def test_the_triangle_and_back():
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1)
     np.testing.assert_allclose(sides, 1)
     # The probability of a state is the height over its opposite side, of a full height sqrt(3)/2.
-    np.testing.assert_allclose(xy[:, 1], grid[:, 2] * math.sqrt(3) / 2, atol=1e-12)
+    np.testing.assert_allclose(xy[:, 1], grid[:, 1] * math.sqrt(3) / 2, atol=1e-12)
     np.testing.assert_allclose(to_triangle(np.full(3, 1 / 3)), corners.mean(axis=0))
 
 

@@ -103,7 +103,7 @@ def test_a_belief_stands_where_its_corners_draw_it(explorer, turns, name, n):
     assert sum(edge.dashed for edge in edges) == (n == 4), "one edge of a tetrahedron is hidden"
     (x,), (y,) = of_kind(trail, Points)[-1].x, of_kind(trail, Points)[-1].y
     start = problem(name).start
-    ordered = belief._TRIANGLE if n == 3 else belief._TETRAHEDRON
+    ordered = belief.CORNERS if n == 3 else belief._TETRAHEDRON
     assert corners == {tuple(corner) for corner in ordered.tolist()}
     assert (x, y) == pytest.approx(tuple(start @ ordered))
     names = [word.text for word in of_kind(trail, Text)]

@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._ask import ExerciseError, ask, numbers
+from ._ask import Rule, judge
 
 Rng = np.random.Generator | int | None
 Floats = NDArray[np.float64]
-Rule = tuple[Callable[..., Any], str]
 
 
 def check_predict(predict: Callable[..., Any], rng: Rng = None) -> str:
@@ -48,8 +47,8 @@ def check_predict(predict: Callable[..., Any], rng: Rng = None) -> str:
 sum runs over s, where the robot comes from
     """
     rng = np.random.default_rng(rng)
-    cases = [(_belief(rng, n), rng.dirichlet(np.ones(n), n)) for n in _sizes(rng)]
-    _judge("predict", predict, cases, lambda b, T: b @ T, WRONG_PREDICT)
+    cases = [(any_belief(rng, n), rng.dirichlet(np.ones(n), n)) for n in _sizes(rng)]
+    judge("predict", predict, cases, lambda b, T: b @ T, WRONG_PREDICT)
     return "Right: every way there counts, weighed by how likely the robot was at its start."
 
 
@@ -86,8 +85,8 @@ def check_correct(correct: Callable[..., Any], rng: Rng = None) -> str:
 divide by the sum
     """
     rng = np.random.default_rng(rng)
-    cases = [(_belief(rng, n), rng.uniform(0.05, 0.95, n)) for n in _sizes(rng)]
-    _judge("correct", correct, cases, lambda b, seen: _normed(b * seen), WRONG_CORRECT)
+    cases = [(any_belief(rng, n), rng.uniform(0.05, 0.95, n)) for n in _sizes(rng)]
+    judge("correct", correct, cases, lambda b, seen: _normed(b * seen), WRONG_CORRECT)
     return "Right: what was believed times what was seen, and made to sum to 1 again."
 
 
@@ -127,8 +126,8 @@ and O is for the state that the action has led to
     cases = []
     for n in _sizes(rng):
         T, O_a = rng.dirichlet(np.ones(n), n), rng.dirichlet(np.ones(n + 1), n)
-        cases.append((_belief(rng, n), T, O_a))
-    _judge("chances", chances, cases, lambda b, T, O_a: b @ T @ O_a, WRONG_CHANCES)
+        cases.append((any_belief(rng, n), T, O_a))
+    judge("chances", chances, cases, lambda b, T, O_a: b @ T @ O_a, WRONG_CHANCES)
     return "Right: first where the action may lead, then what may be seen from there."
 
 
@@ -165,8 +164,8 @@ def check_expected_reward(expected_reward: Callable[..., Any], rng: Rng = None) 
 earn something too, each with its probability
     """
     rng = np.random.default_rng(rng)
-    cases = [(_belief(rng, n), rng.uniform(-5, 10, (n, n + 1))) for n in _sizes(rng)]
-    _judge("expected_reward", expected_reward, cases, lambda b, R: b @ R, WRONG_REWARD)
+    cases = [(any_belief(rng, n), rng.uniform(-5, 10, (n, n + 1))) for n in _sizes(rng)]
+    judge("expected_reward", expected_reward, cases, lambda b, R: b @ R, WRONG_REWARD)
     return "Right: a mean over what the state may be. It is the true expected reward."
 
 
@@ -310,41 +309,10 @@ def _sizes(rng: np.random.Generator) -> list[int]:
     return rng.integers(2, 6, 20).tolist()
 
 
-def _belief(rng: np.random.Generator, n: int) -> Floats:
+def any_belief(rng: np.random.Generator, n: int) -> Floats:
     """Return a belief in which nothing is impossible."""
     return _normed(rng.uniform(0.1, 1, n))
 
 
 def _normed(weights: Floats) -> Floats:
     return weights / weights.sum()
-
-
-def _judge(
-    name: str,
-    function: Callable[..., Any],
-    cases: list[tuple[Any, ...]],
-    right: Callable[..., Floats],
-    wrong: list[Rule],
-) -> None:
-    """Pass what `right` gives; of the rest say which of the `wrong` ways it is, or how far off."""
-    wanted = [right(*case) for case in cases]
-    found = [
-        numbers(name, ask(function, *case), answer.shape)
-        for case, answer in zip(cases, wanted, strict=True)
-    ]
-
-    def agrees(answers: list[Floats]) -> bool:
-        return np.allclose(np.concatenate(found), np.concatenate(answers))
-
-    if agrees(wanted):
-        return
-    for rule, words in wrong:
-        if agrees([rule(*case) for case in cases]):
-            raise ExerciseError(words)
-    k = next(k for k, pair in enumerate(zip(found, wanted, strict=True)) if not np.allclose(*pair))
-    i = int(np.abs(found[k] - wanted[k]).argmax())
-    way = "too large" if found[k][i] > wanted[k][i] else "too small"
-    raise ExerciseError(
-        f"one of your answers is {found[k].round(3)}, and its number {i}, {found[k][i]:.3f}, is "
-        f"{way}"
-    )

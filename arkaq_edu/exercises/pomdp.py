@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._ask import ExerciseError, Rule, ask, judge, numbers
+from .belief import any_belief
 
 Rng = np.random.Generator | int | None
 Floats = NDArray[np.float64]
@@ -99,7 +100,7 @@ plan: its action stands in `actions`
     cases = []
     for S, K in rng.integers([2, 5], [5, 9], (20, 2)).tolist():
         alphas = rng.uniform(-5, 5, (K, S))
-        cases.append((_belief(rng, S), alphas, rng.permutation(K) + 1))
+        cases.append((any_belief(rng, S), alphas, rng.permutation(K) + 1))
     found = np.array([numbers("best", ask(best, *case), (2,)) for case in cases])
 
     def given(column: int) -> Callable[..., float]:
@@ -147,7 +148,7 @@ the plan must beat the best of them
     cases = []
     for S, K in rng.integers([2, 3], [5, 7], (20, 2)).tolist():
         vectors = rng.uniform(-5, 5, (K, S))
-        cases.append((_belief(rng, S), vectors[0], vectors[1:]))
+        cases.append((any_belief(rng, S), vectors[0], vectors[1:]))
     if isinstance(ask(lead, *cases[0]), bool | np.bool_):
         raise ExerciseError("say by how much the plan is ahead, not only whether it is")
     judge("lead", lead, cases, _lead, WRONG_LEAD)
@@ -302,9 +303,3 @@ WRONG_LEAD: list[Rule] = [
         "that is what the best of the others earns: how far is the plan ahead of it?",
     ),
 ]
-
-
-def _belief(rng: np.random.Generator, n: int) -> Floats:
-    """Return a belief in which nothing is impossible."""
-    weights = rng.uniform(0.1, 1, n)
-    return weights / weights.sum()

@@ -28,7 +28,7 @@ from .. import _checks
 from ..pomdp import Calibration, belief_update, problem, successors
 from . import style
 from .diagram import Diagram, Place, blank, link, moment, wire, words
-from .pomdp import COLORS
+from .pomdp import COLORS, short
 
 #: What the thesis prints for the floors after a move down.
 PRINTED_FLOORS = (0.0, 0.33, 0.33, 0.33)
@@ -125,18 +125,6 @@ def belief_words(b: ArrayLike) -> str:
     ('[.100 .450 .000 .450]', '[.000 1.000]')
     """
     return "[" + " ".join(short(p, 3) for p in np.asarray(b)) + "]"
-
-
-def short(p: float, digits: int = 2) -> str:
-    """Return a probability without the zero before its point.
-
-    Examples
-    --------
-    >>> short(0.25), short(0.9996, 3), short(1)
-    ('.25', '1.000', '1.00')
-    """
-    text = f"{p:.{digits}f}"
-    return text[1:] if text.startswith("0.") else text
 
 
 def figure_2_5(ax: Axes | None = None) -> Diagram:

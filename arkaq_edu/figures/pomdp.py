@@ -40,6 +40,7 @@ from ..pomdp import (
     solve_pomdp,
     tree_value,
 )
+from ..pomdp.grid import CORNERS as TRIANGLE
 from . import style
 from .diagram import Diagram, blank, wire, words
 
@@ -61,8 +62,8 @@ COLORS = {
 #: after z1, z2 and z3.
 PLANS = {"a": (0, (0, 1, 1)), "b": (1, (0, 1, 1)), "c": (0, (0, 0, 1)), "d": (0, (0, 1, 0))}
 
-#: Where the corners of the triangle of beliefs stand: three states, all as far from each other.
-CORNERS = np.array([[-np.sqrt(3) / 2, -0.5], [0.0, 1.0], [np.sqrt(3) / 2, -0.5]])
+#: Where the corners of the triangle of beliefs stand, each 1 from its middle.
+CORNERS = np.sqrt(3) * (TRIANGLE - TRIANGLE.mean(axis=0))
 _RISE, _DROP = 0.8, 0.85  # of the bowl, and from its lowest point to the floor
 
 
@@ -860,15 +861,15 @@ def plan_value(pomdp: POMDP, action: int, after: Sequence[int]) -> Floats:
     return tree_value(pomdp, PolicyTree(action, tuple(map(PolicyTree, after))))
 
 
-def short(p: float) -> str:
-    """Return a probability to two digits, without the nought.
+def short(p: float, digits: int = 2) -> str:
+    """Return a probability without the zero before its point.
 
     Examples
     --------
-    >>> short(0.25), short(1.0)
-    ('.25', '1.00')
+    >>> short(0.25), short(0.9996, 3), short(1)
+    ('.25', '1.000', '1.00')
     """
-    return f"{p:.2f}".removeprefix("0") if p < 1 else f"{p:.2f}"
+    return f"{p:.{digits}f}".removeprefix("0")
 
 
 def _belief_axes(ax: Axes | None, pomdp: POMDP, title: str) -> Axes:

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu._checks import array, distribution, integer
 
-# Where a belief lies that is certain of one of three states: left, right, top.
-CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, math.sqrt(3) / 2]])
+# Where a belief lies that is certain of one of three states: left, top, right.
+CORNERS = np.array([[0.0, 0.0], [0.5, math.sqrt(3) / 2], [1.0, 0.0]])
 
 
 def simplex_grid(n_states: int, resolution: int) -> NDArray[np.float64]:
@@ -71,8 +71,8 @@ def to_triangle(b: ArrayLike) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (2,) or (N, 2)
-        The first state is the left corner (0, 0), the second the right one (1, 0), the third the
-        top. The higher the probability of a state, the further is its side and the nearer its
+        The first state is the left corner (0, 0), the second the top, the third the right corner
+        (1, 0). The higher the probability of a state, the further is its side and the nearer its
         corner.
 
     Raises
@@ -110,12 +110,12 @@ def from_triangle(xy: ArrayLike) -> NDArray[np.float64]:
     Examples
     --------
     >>> from_triangle([0.5, 0.0])
-    array([0.5, 0.5, 0. ])
+    array([0.5, 0. , 0.5])
     """
     xy = array("xy", xy, (None, 2) if np.ndim(xy) == 2 else (2,))
-    top = xy[..., 1] / CORNERS[2, 1]
+    top = xy[..., 1] / CORNERS[1, 1]
     right = xy[..., 0] - top / 2
-    b = np.stack([1 - right - top, right, top], axis=-1)
+    b = np.stack([1 - right - top, top, right], axis=-1)
     if (b < -1e-9).any():
         where = np.argwhere((b < -1e-9).any(axis=-1))[0]
         raise ValueError(f"xy must lie in the triangle, got {xy[tuple(where)].tolist()}")

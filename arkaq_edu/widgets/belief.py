@@ -12,9 +12,9 @@ import traitlets
 from numpy.typing import NDArray
 
 from ..figures import style
-from ..figures.belief import short
-from ..figures.pomdp import COLORS, CORNERS
+from ..figures.pomdp import COLORS, short
 from ..pomdp import POMDP, belief_update, predict, problem, successors
+from ..pomdp.grid import CORNERS
 from .explorer import Explorer
 from .scene import Cells, Layer, Line, Panel, Points, Scene, Text
 
@@ -24,9 +24,8 @@ WORLD = "let the world answer"
 
 Floats = NDArray[np.float64]
 
-# Corners of the simplex of three and of four states, in the order of the states. The tetrahedron is
-# seen from outside: the edge from its first corner to its third is at the back.
-_TRIANGLE = (CORNERS - CORNERS[0]) / np.sqrt(3)
+# Corners of the simplex of four states, in their order: a tetrahedron seen from outside, the edge
+# from its first corner to its third at the back.
 _TETRAHEDRON = np.array([[0.0, 0.12], [0.42, 0.95], [1.0, 0.4], [0.6, -0.05]])
 _HIDDEN = (0, 2)
 
@@ -302,7 +301,7 @@ def _trail(pomdp: POMDP, way: Walk) -> Panel:
     """Draw where the belief has been; whole turns are dots, predictions bends of the line."""
     if pomdp.n_states == 2:
         return _line(pomdp, way)
-    corners = _TRIANGLE if pomdp.n_states == 3 else _TETRAHEDRON
+    corners = CORNERS if pomdp.n_states == 3 else _TETRAHEDRON
     layers: list[Layer] = []
     for i, j in zip(*np.triu_indices(len(corners), 1), strict=True):
         hidden = len(corners) == 4 and (i, j) == _HIDDEN
