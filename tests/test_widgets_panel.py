@@ -167,6 +167,21 @@ def test_a_mark_shows_where_in_the_picture_the_ball_was_measured(panel):
         assert np.hypot(seen.x[0] - BALL[0], seen.y[0] - BALL[1]) < 40
 
 
+def test_no_mark_is_drawn_beside_the_picture(panel):
+    inside = set()
+    for head in np.arange(-0.9, 0.91, 0.1):
+        set_all(panel, head=round(head, 1), deeds=())
+        panel.controls["deeds"].value = [Deed("step", 0, 0, round(head, 1))]
+        eye, _ = panel.drawn.panels
+        bars = layers(eye, Line)
+        for bar in bars:
+            assert 0 <= min(bar.x) <= max(bar.x) <= 208
+        named = any("bar" in text.text for text in layers(eye, Text))
+        assert named == bool(bars)
+        inside.add((bool(bars), "no goal" in repr(panel)))
+    assert inside == {(True, False), (False, False), (False, True)}
+
+
 def test_a_kick_says_how_far_and_whether_it_was_a_goal():
     told = set()
     for seed in range(12):

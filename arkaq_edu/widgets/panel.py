@@ -119,6 +119,8 @@ class Drive:
     def __init__(self, seed: int = 0) -> None:
         self.seed = seed
         self.camera = Camera()
+        # It sets the ball and judges; how far off it would place the robot does not matter.
+        self.supervisor = GoalSupervisor(distance=2000.0)
         self._begin()
 
     def _begin(self) -> None:
@@ -152,7 +154,7 @@ class Drive:
         if deed.name == "wait 0.1 s":
             world.stand(_WAIT)
         elif deed.name == "ball to the paw":
-            GoalSupervisor(distance=2000.0).set_ball(world)
+            self.supervisor.set_ball(world)
             self.ball_trail = []
         elif deed.name == "kick":
             self._kick()
@@ -160,7 +162,7 @@ class Drive:
     def _kick(self) -> None:
         self.ball_trail = self.world.swing_paw()
         rolled = math.dist(self.ball_trail[0], self.ball_trail[-1])
-        scored = GoalSupervisor(distance=2000.0).judge(self.world).is_success
+        scored = self.supervisor.judge(self.world).is_success
         self.told = f"kicked {rolled:,.0f} mm{' into the goal' if scored else ', no goal'}"
         if rolled == 0.0:
             self.told = "the paw met no ball"
@@ -219,14 +221,18 @@ class Drive:
             Picture(picture, (0, WIDTH, 0, HEIGHT), smooth=False),
             Text(0, HEIGHT + 9, title),
         ]
-        if goal:
-            x, y = self._pixel(goal.orientation, 3000.0, self.camera.height)
-            layers.append(Line([x, x], [y - 9, y + 9], _BLUE, 2.5))
+        marks = []
         if ball:
             x, y = self._pixel(ball.orientation, ball.distance, pitch.BALL_RADIUS)
             layers.append(Points([x], [y], 9.0, hollow=True))
-        if ball or goal:
-            layers.append(Text(0, -9, _measured(ball, goal), style.QUIET))
+            marks.append("ring: the ball")
+        if goal:
+            x, y = self._pixel(goal.orientation, 3000.0, self.camera.height)
+            if 0 <= x <= WIDTH:  # else the goal is so far cut that its middle is out of view
+                layers.append(Line([x, x], [y - 9, y + 9], _BLUE, 2.5))
+                marks.append("bar: the goal's middle")
+        if marks:
+            layers.append(Text(0, -9, ", ".join([*marks, "as measured"]), style.QUIET))
         ends = (0.0, WIDTH + 8.0), (-18.0, HEIGHT + 18.0)
         return Panel("", "", *ends, layers, bare=True)
 
@@ -313,12 +319,6 @@ def _arc(pose: tuple[float, float, float], left: float, right: float) -> NDArray
     chord = share * ahead * np.sinc(share * turn / 2 / math.pi)
     angle = heading + share * turn / 2
     return np.column_stack([x + chord * np.cos(angle), y + chord * np.sin(angle)])
-
-
-def _measured(ball: Sighting | None, goal: GoalSighting | None) -> str:
-    """Name the marks that are in the picture."""
-    ring, bar = "ring: the ball" if ball else "", "bar: the goal's middle" if goal else ""
-    return ", ".join(filter(None, [ring, bar])) + ", as measured"
 
 
 def _proper(words: str) -> str:
