@@ -29,7 +29,8 @@ def follow(steps, rewards, actions, branches, enough, most, values):
                 for z in range(branches.shape[1]):
                     rest = branches[n, z]
                     for t in range(S):
-                        total += steps[a, z, s, t] * values[rest, t]
+                        if steps[a, z, s, t] != 0.0:  # most are, in most models
+                            total += steps[a, z, s, t] * values[rest, t]
                 change = max(change, abs(total - values[n, s]))
                 values[n, s] = total
         if change <= enough:
@@ -40,6 +41,15 @@ def steps_and_rewards(pomdp: POMDP) -> tuple[NDArray[np.floating], NDArray[np.fl
     """Return gamma T(s, a, t) O(t, a, z) at [a, z, s, t], and R(s, a) at [a, s]."""
     seen = pomdp.O.transpose(0, 2, 1)[:, :, np.newaxis]
     return pomdp.gamma * pomdp.T[:, np.newaxis] * seen, np.ascontiguousarray(pomdp.R.T)
+
+
+def settle(pomdp: POMDP, graph: PolicyGraph, guess: NDArray[np.floating]) -> NDArray[np.floating]:
+    """Return what a graph's nodes earn, from a guess, by repeating their equations."""
+    values = guess.copy()
+    most = 10 + int(40 / -np.log(max(pomdp.gamma, 1e-9)))  # e^-40 is less than rounding
+    enough = 1e-15 * float(np.abs(pomdp.R).max())
+    follow(*steps_and_rewards(pomdp), graph.actions, graph.branches, enough, most, values)
+    return values
 
 
 class PolicyGraph:
@@ -116,13 +126,10 @@ class PolicyGraph:
             raise ValueError(
                 f"branches must have shape ({K}, {pomdp.n_observations}), got {(K, Z)}"
             )
-        S, gamma = pomdp.n_states, pomdp.gamma
-        steps, rewards = steps_and_rewards(pomdp)
+        S = pomdp.n_states
         if K * S > LARGE:
-            values = np.zeros((K, S))
-            sweeps = 10 + int(40 / -np.log(max(gamma, 1e-9)))
-            follow(steps, rewards, self.actions, self.branches, 0.0, sweeps, values)
-            return values
+            return settle(pomdp, self, np.zeros((K, S)))
+        steps, rewards = steps_and_rewards(pomdp)
         moves = np.zeros((K, S, K, S))
         for z in range(Z):
             moves[np.arange(K), :, self.branches[:, z], :] += steps[self.actions, z]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from arkaq_edu._checks import integer, number
 from arkaq_edu.pomdp._points import improve
-from arkaq_edu.pomdp.graph import PolicyGraph
+from arkaq_edu.pomdp.graph import PolicyGraph, settle
 from arkaq_edu.pomdp.model import POMDP
 from arkaq_edu.pomdp.pruning import distance, needed_sums
 from arkaq_edu.pomdp.value import ValueFunction
@@ -115,8 +115,8 @@ def solve_pomdp(pomdp: POMDP, horizon: int | None = None, tol: float = 1e-6) -> 
 def _endless(pomdp: POMDP, tol: float) -> ValueFunction:
     """Iterate until the certified bound is within `tol`."""
     gamma, corners = pomdp.gamma, np.eye(pomdp.n_states)
-    same = np.arange(pomdp.n_actions)
-    alphas = PolicyGraph(same, np.tile(same, (pomdp.n_observations, 1)).T).values(pomdp)
+    # What each action earns if it is taken for ever: V = R + gamma T V.
+    alphas = np.linalg.solve(corners - gamma * pomdp.T, pomdp.R.T[:, :, np.newaxis])[:, :, 0]
     finest = tol * (1 - gamma) / 4
     residual, beliefs = float(np.ptp(pomdp.R)), corners
     while True:
@@ -153,7 +153,7 @@ def _close(pomdp: POMDP, step: Backup, alphas: Floats, tol: float) -> ValueFunct
     # Where a plan went on with a vector of V, the graph goes on with the nearest of H V.
     nearest = np.array([np.abs(step.alphas - alpha).max(axis=1).argmin() for alpha in alphas])
     graph = PolicyGraph(step.actions, nearest[step.branches])
-    earned = graph.values(pomdp)
+    earned = settle(pomdp, graph, step.alphas)
     again = backup(pomdp, earned, tol, step.beliefs)
     error = (distance(again.alphas, earned)[0] + again.lost) / (1 - pomdp.gamma)
     return ValueFunction(earned, graph.actions, graph.branches, None, error)
