@@ -16,6 +16,17 @@ from numpy.typing import NDArray
 from .scene import PNG_WIDTH, Scene
 
 
+def wide(label: str = "9em") -> dict[str, Any]:
+    """Return how sliders look that stand below each other: `label` is the room for their words.
+
+    Examples
+    --------
+    >>> ipywidgets.IntSlider(description="sweeps", **wide("7em")).style.description_width
+    '7em'
+    """
+    return {"layout": {"width": "min(100%, 36em)"}, "style": {"description_width": label}}
+
+
 class CanvasView(anywidget.AnyWidget):
     """A canvas in the browser that draws the scene it was last shown, and tells of the pointer.
 

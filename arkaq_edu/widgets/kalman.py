@@ -13,8 +13,8 @@ from .. import _checks
 from ..figures import style
 from ..figures.kalman import running_nis
 from ..kalman import KalmanFilter, KalmanTrace
-from .explorer import Explorer
-from .scene import Cells, Layer, Line, Panel, Points, Scene, Text
+from .explorer import Explorer, wide
+from .scene import Layer, Line, Panel, Points, Scene, Text, between
 
 START, STEP = 3400.0, -100.0  # where the ball is at first, and what a footstep does to it: mm
 #: Standard deviations of the simulated world, in mm: its start, a footstep, a sighting.
@@ -122,11 +122,8 @@ def kalman_explorer() -> Explorer:
     >>> explorer
     mean NIS 1.10 where 0.67 to 1.39 is right; estimate 60 mm off, sightings 102 mm
     """
-    wide: dict[str, Any] = {
-        "layout": {"width": "min(100%, 36em)"}, "style": {"description_width": "9em"},
-    }  # fmt: skip
     # The truth is a stop of both: a browser moves a slider that starts between two stops.
-    powers: dict[str, Any] = {"base": 10, "step": 0.05} | wide
+    powers: dict[str, Any] = {"base": 10, "step": 0.05} | wide()
     r, q = (np.log10([sigma / 10, sigma * 10]) for sigma in (SIGHTING_NOISE, STEP_NOISE))
     return Explorer(
         partial(draw, simulated_walk()),
@@ -137,7 +134,7 @@ def kalman_explorer() -> Explorer:
             25.0, min=q[0], max=q[1], readout_format=".1f", description="sigma of Q (mm)", **powers
         ),
         dropout=ipywidgets.FloatSlider(
-            0.0, min=0, max=0.9, step=0.1, readout_format=".0%", description="dropout", **wide
+            0.0, min=0, max=0.9, step=0.1, readout_format=".0%", description="dropout", **wide()
         ),
     )
 
@@ -180,7 +177,7 @@ def _track(walk: Walk, Z: NDArray[np.float64], trace: KalmanTrace, told: str) ->
     x, sigma = trace.x[:, 0], np.sqrt(trace.P[:, 0, 0])
     seen = trace.accepted
     layers: list[Layer] = [
-        _between(k, x - sigma, x + sigma, (*_CYCLES, *_DISTANCES), _ONE_SIGMA),
+        between(k, x - sigma, x + sigma, (*_CYCLES, *_DISTANCES), _ONE_SIGMA),
         Line(k, walk.truth, style.INK, 1.3),
         Line(k, x, style.OURS, 2.0),
         Points(k[seen], Z[seen, 0], 3.0, hollow=True),
@@ -199,7 +196,7 @@ def _nis(trace: KalmanTrace) -> Panel:
     n, mean, low, high = running_nis(trace)
     ends = (1.0, 66.0)
     layers: list[Layer] = [
-        _between(n, np.clip(low, *_NIS), high, (*ends, *_NIS), _RIGHT),
+        between(n, np.clip(low, *_NIS), high, (*ends, *_NIS), _RIGHT),
         Line(ends, [1, 1], style.QUIET, 1.0, dashed=True),
         Line(n, np.clip(mean, *_NIS), style.OURS, 2.0),
         Points(n[-1:], np.clip(mean[-1:], *_NIS), 4.0, style.OURS),
@@ -211,14 +208,3 @@ def _nis(trace: KalmanTrace) -> Panel:
         "sightings so far", "mean NIS", ends, _NIS, layers, log="xy",
         xticks=[1, 3, 10, 30, 60], yticks=[0.1, 1, 10, 100],
     )  # fmt: skip
-
-
-def _between(
-    x: NDArray[Any],
-    low: NDArray[np.float64],
-    high: NDArray[np.float64],
-    within: tuple[float, float, float, float],
-    shade: str,
-) -> Cells:
-    outline = np.column_stack([np.append(x, x[::-1]), np.append(high, low[::-1])])
-    return Cells([outline], [0], within, [shade], border=0)

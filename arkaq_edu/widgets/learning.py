@@ -27,8 +27,8 @@ from ..mdp import (
     regret,
 )
 from ..mdp.bandits import Strategy
-from .explorer import Buttons, Explorer
-from .scene import Cells, Layer, Line, Panel, Points, Scene, Text
+from .explorer import Buttons, Explorer, wide
+from .scene import Cells, Layer, Line, Panel, Points, Scene, Text, between
 
 LONGEST = 30  # steps: where the slider of the horizon ends
 GAMMAS = tuple(step / 100 for step in range(100))  # the stops of the slider of gamma
@@ -48,9 +48,6 @@ PLAYERS = 300  # so many play each strategy on the same machines
 
 _LENGTHS = (40, 70, 100, 150, 200, 300, 500, 1000)  # pulls: where the axis of a game ends
 _TIE = "#c9c9c9"
-_WIDE: dict[str, Any] = {
-    "layout": {"width": "min(100%, 36em)"}, "style": {"description_width": "9em"},
-}  # fmt: skip
 
 
 def horizon_explorer() -> Explorer:
@@ -79,9 +76,9 @@ def horizon_explorer() -> Explorer:
     """
     return Explorer(
         draw_models,
-        h=ipywidgets.IntSlider(5, min=1, max=LONGEST, description="horizon h (steps)", **_WIDE),
+        h=ipywidgets.IntSlider(5, min=1, max=LONGEST, description="horizon h (steps)", **wide()),
         gamma=ipywidgets.FloatSlider(
-            0.9, min=GAMMAS[0], max=GAMMAS[-1], step=0.01, description="discount gamma", **_WIDE
+            0.9, min=GAMMAS[0], max=GAMMAS[-1], step=0.01, description="discount gamma", **wide()
         ),
     )
 
@@ -228,7 +225,7 @@ def bandit_explorer() -> Explorer:
     >>> explorer.drawn.fact.split(",")[0]
     '13 pulls'
     """
-    machines = ipywidgets.IntSlider(3, min=1, max=30, description="machines no.", **_WIDE)
+    machines = ipywidgets.IntSlider(3, min=1, max=30, description="machines no.", **wide())
     pulls = Buttons(MACHINES, value=OPENING)
     reveal = ipywidgets.Checkbox(False, description="show their chances", indent=False)
 
@@ -372,8 +369,7 @@ def _regrets(
     colors = dict(zip([*others, "you"], SERIES, strict=True))
     for name, (mean, std) in others.items():
         low, high = (mean - std)[: n + 1], (mean + std)[: n + 1]
-        outline = np.column_stack([np.append(k, k[::-1]), np.append(high, low[::-1])])
-        bands.append(Cells([outline], [0], (*ends, *heights), [colors[name] + "2b"], border=0))
+        bands.append(between(k, low, high, (*ends, *heights), colors[name] + "2b"))
         lines.append(Line(k, mean[: n + 1], colors[name], 1.6))
     lines += [Line(k, yours, style.OURS, 2.6), Points([n], yours[-1:], 5.0, style.OURS)]
     for row, (name, (mean, std)) in enumerate(told.items()):

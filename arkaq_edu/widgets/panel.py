@@ -21,7 +21,7 @@ from ..field import Camera, GoalSighting, GoalSupervisor, Sighting, World, bird_
 from ..field.camera import FOCAL_LENGTH, HEIGHT, WIDTH
 from ..field.view import EXTENT
 from ..figures import style
-from .explorer import Buttons, Explorer
+from .explorer import Buttons, Explorer, wide
 from .scene import Layer, Line, Panel, Picture, Points, Scene, Text
 
 #: The names on the buttons.
@@ -34,9 +34,7 @@ _STEPS = {"step": 1, "5 steps": 5}
 _WAIT = 0.1
 _AHEAD = 5  # cycles that the dashed line shows
 _BLUE = "#1b4f8f"
-_WIDE: dict[str, Any] = {
-    "layout": {"width": "min(100%, 36em)"}, "style": {"description_width": "11em"},
-}  # fmt: skip
+_WIDE = wide("11em")
 
 
 class Deed(NamedTuple):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import ipywidgets
 import numpy as np
@@ -13,8 +13,8 @@ from ..figures import style
 from ..figures.mdp import BALL, HOLE, SHADES, STONE, floor_polygons
 from ..mdp import QLearner, best_actions, error_bound, policy_iteration, practise
 from ..mdp.grid import Grid, grid_world
-from .explorer import Explorer
-from .scene import Cells, Layer, Line, Panel, Points, Scene, Text
+from .explorer import Explorer, wide
+from .scene import Cells, Layer, Line, Panel, Points, Scene, Text, between
 
 #: How many sweeps the slider of value iteration goes up to.
 SWEEPS = 40
@@ -25,9 +25,7 @@ RATES: tuple[float | str, ...] = ("1/visits", 0.05, 0.1, 0.2, 0.5, 1.0)
 #: How many robots live beside the one that is shown.
 RUNS = 20
 
-_WIDE: dict[str, Any] = {
-    "layout": {"width": "min(100%, 36em)"}, "style": {"description_width": "7em"},
-}  # fmt: skip
+_WIDE = wide("7em")
 _ERRORS = (0.01, 10_000.0)
 
 
@@ -307,12 +305,9 @@ def draw_life(steps: int, alpha: float | str, temperature: float) -> Scene:
 def _learned(life: Life, i: int) -> Panel:
     mean, spread = life.error.mean(axis=0)[1:], life.error.std(axis=0)[1:]
     k = np.array(STEPS[1:], dtype=float)
-    outline = np.column_stack(
-        [np.append(k, k[::-1]), np.append(mean + spread, (mean - spread)[::-1])]
-    )
     ends, heights = (90.0, 25_000.0), (0.0, 100.0)
     layers: list[Layer] = [
-        Cells([outline], [0], (*ends, *heights), ["#e2cbdc"], border=0),
+        between(k, mean - spread, mean + spread, (*ends, *heights), "#e2cbdc"),
         Line(k, mean, style.OURS, 2.0),
         Points([max(STEPS[i], ends[0])], life.error[0, [i]], 4.5, style.INK),
         Text(700, 94, f"{RUNS} robots ± 1 sigma", style.OURS),

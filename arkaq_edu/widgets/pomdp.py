@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from functools import lru_cache
 from itertools import pairwise
-from typing import Any
 
 import ipywidgets
 import numpy as np
@@ -23,7 +22,7 @@ from ..figures.pomdp import (
     upper_surface,
 )
 from ..pomdp import PolicyTree, ValueFunction, problem
-from .explorer import Drag, Explorer
+from .explorer import Drag, Explorer, wide
 from .scene import Cells, Layer, Line, Panel, Points, Scene, Text
 
 Floats = NDArray[np.float64]
@@ -32,9 +31,6 @@ Floats = NDArray[np.float64]
 HORIZONS = range(1, 6)
 _FADED = 128  # lines that can be told from each other at all
 _FAINT = "#dcdcdc"
-_SLIDER: dict[str, Any] = {
-    "layout": {"width": "min(100%, 36em)"}, "style": {"description_width": "9em"},
-}  # fmt: skip
 
 
 def value_explorer() -> Explorer:
@@ -62,10 +58,10 @@ def value_explorer() -> Explorer:
     1 step to go, p(s1) = 0.25: worth 1.125, begin with a2; 2 of 2 plans are needed
     """
     horizon = ipywidgets.IntSlider(
-        3, min=HORIZONS[0], max=HORIZONS[-1], description="steps to go", **_SLIDER
+        3, min=HORIZONS[0], max=HORIZONS[-1], description="steps to go", **wide()
     )
     belief = ipywidgets.FloatSlider(
-        0.25, min=0, max=1, step=0.01, description="belief p(s1)", **_SLIDER
+        0.25, min=0, max=1, step=0.01, description="belief p(s1)", **wide()
     )
     return Explorer(draw_value, horizon=horizon, belief=Drag(belief))
 
@@ -232,13 +228,13 @@ def bowl_explorer() -> Explorer:
     2 steps to go: 7 planes, worth 1.80 in the middle, 5.00 at the corners; seen from 46°, 38° up
     """
     horizon = ipywidgets.IntSlider(
-        2, min=HORIZONS[0], max=HORIZONS[-1], description="steps to go", **_SLIDER
+        2, min=HORIZONS[0], max=HORIZONS[-1], description="steps to go", **wide()
     )
     azimuth = ipywidgets.FloatSlider(
-        46, min=-180, max=180, step=2, description="turn (degrees)", readout_format=".0f", **_SLIDER
+        46, min=-180, max=180, step=2, description="turn (degrees)", readout_format=".0f", **wide()
     )
     elevation = ipywidgets.FloatSlider(
-        38, min=0, max=90, step=2, description="eye (degrees up)", readout_format=".0f", **_SLIDER
+        38, min=0, max=90, step=2, description="eye (degrees up)", readout_format=".0f", **wide()
     )
     return Explorer(draw_bowl, horizon=horizon, view=Drag(azimuth, elevation, gain=(60, -60)))
 

@@ -283,6 +283,25 @@ class Scene:
         return file.getvalue()
 
 
+def between(
+    x: ArrayLike,
+    low: ArrayLike,
+    high: ArrayLike,
+    within: tuple[float, float, float, float],
+    color: str,
+) -> Cells:
+    """Return the area between two curves, seen through a window as `Cells` is.
+
+    Examples
+    --------
+    >>> between([0, 1], [0, 0], [1, 2], (0, 1, 0, 9), "#dddddd").polygons[0].tolist()
+    [[0, 1], [1, 2], [1, 0], [0, 0]]
+    """
+    x, low, high = (np.asarray(values) for values in (x, low, high))
+    outline = np.column_stack([np.append(x, x[::-1]), np.append(high, low[::-1])])
+    return Cells([outline], [0], within, [color], border=0)
+
+
 def tick_label(value: float) -> str:
     """Return a tick's number as it is printed beside the axis.
 
