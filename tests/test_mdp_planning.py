@@ -154,6 +154,19 @@ def test_policies_that_never_differ_end_at_the_lowest_action():
     assert not value_iteration(mdp, tol=1e-6)[1].any()
 
 
+def test_value_iteration_ends_when_nothing_changes_any_more():
+    class Counting(MDP):
+        sweeps = 0
+
+        def action_values(self, V):
+            self.sweeps += 1
+            return super().action_values(V)
+
+    mdp = Counting([np.eye(2)[[1, 1]]], [[1.0], [0.0]], gamma=0.999)
+    assert value_iteration(mdp)[0].tolist() == [1, 0]
+    assert mdp.sweeps <= 3  # the bound alone would ask for more than 20,000
+
+
 def test_actions_that_a_loose_tolerance_cannot_tell_apart_count_as_equal():
     """To wait for 1 a step, for ever, is worth 9 at the start; the other action pays 9 at once."""
     wait, take = [[0, 1, 0], [0, 1, 0], [0, 0, 1]], [[0, 0, 1], [0, 1, 0], [0, 0, 1]]
