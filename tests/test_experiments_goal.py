@@ -165,7 +165,7 @@ def test_dynamic_programming_knows_what_can_be_seen_without_it():
 
 def test_the_study_is_over_thirty_seeds_and_shows_what_the_thesis_says(study):
     shares = goal.rates(study)
-    assert len(shares) >= 10
+    assert len(shares) >= 30 and shares.notna().all(axis=None)
     mean, error = shares.mean(), shares.std() / np.sqrt(len(shares))
     for distance in ("near", "far"):
         best = goal.best_policy(distance)

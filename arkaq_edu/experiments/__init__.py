@@ -28,6 +28,7 @@ __getattr__, __dir__, __all__ = _lazy.attach(
         "kicks": ["load_kicks", "record_kicks"],
         "reproduce": [
             "agent_file",
+            "goal_table",
             "load_study",
             "mean_nis",
             "results",

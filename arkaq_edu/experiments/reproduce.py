@@ -43,6 +43,28 @@ def load_study() -> pd.DataFrame:
     return pd.read_csv(data_file("approach_study.csv"))
 
 
+def goal_table() -> pd.DataFrame:
+    """Return the goal problem set against the thesis, from the study kept with the course.
+
+    Returns
+    -------
+    DataFrame
+        See `results`; "ARKAQ" is the greedy policy it ends with, on fresh starts.
+
+    Examples
+    --------
+    >>> table = goal_table().set_index("quantity")
+    >>> table.thesis["goals (%), near, ARKAQ"], int(table.seeds.min())
+    (np.float64(60.0), 30)
+    """
+    counts = goal.load_centre_counts().add_prefix("goal centres, vigilance ")
+    shares = goal.rates(goal.load_study()).drop(columns="ARKAQ", level="who")
+    names = {"ARKAQ, learned": "ARKAQ", "oracle": "planner that sees the truth"}
+    shares.columns = [f"goals (%), {place}, {names.get(who, who)}" for place, who in shares.columns]
+    rows = pd.concat([counts, shares], axis=1).rename_axis("seed").reset_index()
+    return summary(rows.melt(id_vars="seed", var_name="quantity"))
+
+
 def agent_file(folder: str | os.PathLike[str], kind: str, seed: int) -> Path:
     """Return where `results` keeps one of its agents.
 
@@ -120,7 +142,7 @@ def results(
         tasks += [delayed(_stream)(seed), delayed(_references)(seed, approaches)]
         for sensing in ("consistent", "thesis"):
             tasks.append(delayed(_training)(seed, sensing, approaches, folder, learning))
-        tasks.append(delayed(_orientations)(seed))
+        tasks.append(delayed(_orientations)(seed, goal_learning))
         for distance in goal.VIGILANCE:
             tasks.append(delayed(_goals)(seed, distance, approaches, folder, goal_learning))
     done = Parallel(n_jobs=jobs, return_as="generator_unordered")(tasks)
@@ -258,8 +280,9 @@ def _checkpoint(folder: str | os.PathLike[str] | None, kind: str, seed: int) -> 
     return path
 
 
-def _orientations(seed: int) -> tuple[int, dict[str, float]]:
-    counts = goal.centre_counts([seed]).loc[seed]
+def _orientations(seed: int, learning: Learning | None) -> tuple[int, dict[str, float]]:
+    looks = (learning or Learning.goal()).patterns
+    counts = goal.centre_counts([seed], n=looks).loc[seed]
     return seed, {f"goal centres, vigilance {rho:g}": float(n) for rho, n in counts.items()}
 
 

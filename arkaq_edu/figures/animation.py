@@ -136,7 +136,7 @@ def save_walk(walk: Walk, path: str | os.PathLike[str]) -> None:
     Traceback (most recent call last):
     ValueError: path must end in .gif or .html, got 'walk.avi'
     """
-    _save(animate_walk, walk, how_it_went(walk), path)
+    _save(walk, path, animate_walk, how_it_went)
 
 
 def animate_shot(shot: Shot) -> FuncAnimation:
@@ -209,15 +209,20 @@ def save_shot(shot: Shot, path: str | os.PathLike[str]) -> None:
     ValueError
         If it ends otherwise.
     """
-    _save(animate_shot, shot, how_the_shot_went(shot), path)
+    _save(shot, path, animate_shot, how_the_shot_went)
 
 
-def _save(animate: Callable[[Any], FuncAnimation], what: Any, title: str, path) -> None:
+def _save(
+    what: Any,
+    path: str | os.PathLike[str],
+    animate: Callable[[Any], FuncAnimation],
+    said: Callable[[Any], str],
+) -> None:
     ending = Path(path).suffix.lower()
     if ending == ".gif":
         animate(what).save(Path(path), PillowWriter(FRAMES_PER_SECOND), dpi=_DPI)
     elif ending == ".html":
-        Path(path).write_text(_page(animate(what), title), encoding="utf-8")
+        Path(path).write_text(_page(animate(what), said(what)), encoding="utf-8")
     else:
         raise ValueError(f"path must end in .gif or .html, got {os.fspath(path)!r}")
 
