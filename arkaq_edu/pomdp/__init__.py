@@ -8,7 +8,8 @@ Thesis 2.3.
 - `trees`: policy trees and what they earn;
 - `value`: a value function, the upper surface of vectors; `graph`: plans without an end;
 - `pruning`: which vectors are needed, and who dominates the others; `_simplex`: its loops;
-- `solve`: exact value iteration; `bounds`: from points, where that is out of reach;
+- `solve`: exact value iteration, `_points`: its cheap steps in between; `bounds`: from points,
+  where that is out of reach;
 - `agent`: keep the belief and act on it.
 """
 

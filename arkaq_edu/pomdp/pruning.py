@@ -124,12 +124,14 @@ def needed_sums(
 
 def _apart(A: Floats, B: Floats) -> NDArray[np.bool_]:
     """Tell for which pairs (i, j) there is no belief where both A[i] and B[j] can be best."""
+    apart = np.zeros((len(A), len(B)), np.bool_)
     if 1 in (len(A), len(B), A.shape[1]):
-        return np.zeros((len(A), len(B)), np.bool_)
+        return apart
     (low_A, high_A), (low_B, high_B) = _box(A), _box(B)
-    low = np.maximum(low_A[:, np.newaxis], low_B)
-    high = np.minimum(high_A[:, np.newaxis], high_B)
-    return np.any(low > high + APART, axis=2)
+    for s in range(A.shape[1]):
+        apart |= np.subtract.outer(low_A[:, s], high_B[:, s]) > APART
+        apart |= np.subtract.outer(high_A[:, s], low_B[:, s]) < -APART
+    return apart
 
 
 def _box(A: Floats) -> tuple[Floats, Floats]:

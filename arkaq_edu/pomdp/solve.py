@@ -119,11 +119,15 @@ def _endless(pomdp: POMDP, tol: float) -> ValueFunction:
     alphas = np.linalg.solve(corners - gamma * pomdp.T, pomdp.R.T[:, :, np.newaxis])[:, :, 0]
     finest = tol * (1 - gamma) / 4
     residual, beliefs = float(np.ptp(pomdp.R)), corners
+    part = 1 / 20
     while True:
-        # Pruning need not be finer than what the iteration still lacks.
-        coarse = max(residual / 20, finest)
+        # Pruning need not be finer than a part of what the iteration still lacks.
+        coarse = max(part * residual, finest)
         step = backup(pomdp, alphas, coarse, beliefs)
+        before = residual
         residual, where = distance(step.alphas, alphas)
+        if residual > 0.9 * before:
+            part /= 2
         error = (gamma * residual + step.lost) / (1 - gamma)
         rounding = max(step.lost, 1e-13 * np.abs(alphas).max())
         in_vain = rounding > max(1.01 * coarse, residual, 2 * finest)
