@@ -12,6 +12,7 @@ from .panel import control_panel
 from .planning import planning_explorer, q_learning_explorer
 from .pomdp import bowl_explorer, value_explorer
 from .resonance import letters_explorer, resonance_explorer
+from .scoring import scoring_explorer
 from .vigilance import vigilance_explorer
 
 __all__ = [
@@ -29,6 +30,7 @@ __all__ = [
     "planning_explorer",
     "q_learning_explorer",
     "resonance_explorer",
+    "scoring_explorer",
     "value_explorer",
     "vigilance_explorer",
 ]
