@@ -25,9 +25,10 @@ from arkaq_edu.mdp import MDP, value_iteration
 
 Floats = NDArray[np.float64]
 
-#: Orientations of the goal (rad) on which values are kept, thirty to a turn, so that a turn leads
-#: from one to another; and turns an episode allows.
-GRID = Sensing.goal().B[0][TURN_RIGHT] / 30 * np.arange(-240, 241)
+#: Orientations of the goal (rad) on which values are kept: so many to a turn, eight turns aside.
+STEPS = 30
+GRID = Sensing.goal().B[0][TURN_RIGHT] / STEPS * np.arange(-8 * STEPS, 8 * STEPS + 1)
+#: Turns an episode allows.
 PATIENCE = 30
 _MARKS = 12  # points kept of a way
 _WIDEST = 1.0  # rad; farther aside hardly a kick scores
@@ -217,36 +218,33 @@ def category(centers: ArrayLike, orientations: ArrayLike) -> NDArray[np.intp]:
     return np.abs(seen - np.ravel(centers)).argmin(axis=1)
 
 
-@lru_cache(maxsize=1)
-def turned() -> Floats:
-    """Return the matrices that give, of values on `GRID`, their means after either turn.
+def after_turns(values: Floats) -> Floats:
+    """Return the mean of `values` after a turn to the left and after one to the right.
 
-    A turn's outcome is normal; three points with weights 1/6, 2/3, 1/6 have its moments. Beyond the
-    grid, eight turns aside, all is lost.
+    A turn moves by `STEPS` places of the grid, give or take a normal error. Three points at -1, 0
+    and 1 times the square root of 3 sigmas, with weights 1/6, 2/3, 1/6, have its moments; the
+    outer two lie between neighbours on the grid. Beyond the grid, eight turns aside, all is lost.
+
+    Parameters
+    ----------
+    values : ndarray, shape (..., 481)
+        On `GRID`.
 
     Returns
     -------
-    ndarray, shape (2, 481, 481)
+    ndarray, shape (2, ..., 481)
 
     Examples
     --------
-    >>> left, right = turned() @ GRID
+    >>> left, right = after_turns(GRID)
     >>> left[240].round(3), right[240].round(3)  # from straight ahead
     (np.float64(-0.148), np.float64(0.148))
     """
-    sensing = Sensing.goal()
-    nodes = np.sqrt([3.0 * sensing.Q[0][0]]) * [-1, 0, 1]
-    unit = np.eye(len(GRID))
-    return np.array(
-        [
-            sum(
-                weight
-                * np.array([np.interp(GRID + moved + node, GRID, one, 0, 0) for one in unit]).T
-                for node, weight in zip(nodes, (1 / 6, 2 / 3, 1 / 6), strict=True)
-            )
-            for moved in sensing.B[0][:KICK]
-        ]
-    )
+    n = len(GRID)
+    aside = np.sqrt(3 * Sensing.goal().Q[0][0]) / (GRID[1] - GRID[0]) / 6
+    room = np.pad(values, [(0, 0)] * (values.ndim - 1) + [(STEPS + 1, STEPS + 1)])
+    mean = (1 - 2 * aside) * room[..., 1:-1] + aside * (room[..., :-2] + room[..., 2:])
+    return np.array([mean[..., :n], mean[..., -n:]])
 
 
 def plan(scores: Floats, centers: ArrayLike, learning: Learning | None = None) -> NDArray[np.intp]:
@@ -344,8 +342,8 @@ def prospects(scores: Floats, actions: NDArray[np.intp]) -> Prospects:
     """
     learned, best, random = values = np.zeros((3, len(GRID)))
     for _ in range(PATIENCE):
-        left, right = values @ turned().transpose(0, 2, 1)
-        choices = np.array([left, right, np.broadcast_to(scores, values.shape)])
+        kick = np.broadcast_to(scores, (1, *values.shape))
+        choices = np.concatenate([after_turns(values), kick])
         learned = np.take_along_axis(choices[:, 0], actions[None], axis=0)[0]
         best, random = choices[:, 1].max(axis=0), choices[:, 2].mean(axis=0)
         values = np.array([learned, best, random])
