@@ -1,23 +1,24 @@
 """The checks of the goal problem's exercises: right passes, wrong is told in what way."""
 
 import math
-from statistics import NormalDist
 
 import numpy as np
 import pytest
 
 from arkaq_edu.art import EuclideanART
-from arkaq_edu.exercises import ExerciseError, check_scoring, check_state_bounds, check_worth
+from arkaq_edu.exercises import (
+    ExerciseError,
+    check_kicks_needed,
+    check_state_bounds,
+    check_worth,
+)
 
 
-def between(low, high, sigma):
-    bearing = NormalDist(0.0, sigma)
-    return bearing.cdf(high) - bearing.cdf(low)
-
-
-def scoring(distance, orientation, sigma):
-    half = math.atan2(400, distance)
-    return between(orientation - half, orientation + half, sigma)
+def kicks_needed(p, q, sigmas):
+    n = 1
+    while abs(p - q) < sigmas * math.sqrt(p * (1 - p) / n + q * (1 - q) / n):
+        n += 1
+    return n
 
 
 def worth(now, then, gamma, cost):
@@ -32,18 +33,15 @@ def state_bounds(vigilance, width):
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize(
     ("check", "answer"),
-    [(check_scoring, scoring), (check_worth, worth), (check_state_bounds, state_bounds)],
+    [(check_kicks_needed, kicks_needed), (check_worth, worth), (check_state_bounds, state_bounds)],
 )
 def test_a_right_answer_is_praised(check, answer, seed):
     assert check(answer, rng=seed).startswith("Right")
 
 
-def within(half, measure=lambda sigma: sigma):
-    return lambda d, o, s: between(o - half(d), o + half(d), measure(s))
-
-
-def angle(d):
-    return math.atan(400 / d)
+def of_each(variance):
+    """An answer in which a kick has another variance, or two of them add up otherwise."""
+    return lambda p, q, z: math.ceil(z**2 * variance(p, q) / (p - q) ** 2)
 
 
 def turning(rule):
@@ -61,21 +59,30 @@ def not_written(*_):
 
 
 WRONG = [
-    (check_scoring, lambda d, o, s: scoring(d, 0.0, s), "where does the orientation"),
-    (check_scoring, within(lambda d: math.atan(800 / d)), "twice too wide"),
-    (check_scoring, within(lambda d: math.atan(200 / d)), "half too narrow"),
-    (check_scoring, within(lambda d: 400 / d), "the tangent"),
-    (check_scoring, lambda d, o, s: NormalDist(0, s).cdf(o + angle(d)), "left post"),
-    (check_scoring, lambda d, o, s: NormalDist(0, s).cdf(o - angle(d)), "right post: these"),
-    (check_scoring, lambda d, o, s: 1 - scoring(d, o, s), "of a miss"),
-    (check_scoring, within(angle, lambda s: s * s), "the variance"),
-    (check_scoring, within(angle, lambda s: 1.0), "sigma does not come in"),
-    (check_scoring, within(lambda d: math.degrees(angle(d))), "always 1: do degrees"),
-    (check_scoring, lambda d, o, s: 100 * scoring(d, o, s), "per cent"),
-    (check_scoring, lambda d, o, s: 0.5, "what is given$"),
-    (check_scoring, lambda d, o, s: scoring(d, o, 2 * s), "0 of 12 tries"),
-    (check_scoring, lambda d, o, s: [scoring(d, o, s)], r"shape \(\), not \(1,\)"),
-    (check_scoring, not_written, "still empty"),
+    (check_kicks_needed, lambda p, q, z: kicks_needed(p, q, z) - 1, "you round down"),
+    (check_kicks_needed, lambda p, q, z: 2 * kicks_needed(p, q, z), "both robots together"),
+    (check_kicks_needed, of_each(lambda p, q: p * (1 - p)), "only the first robot"),
+    (check_kicks_needed, of_each(lambda p, q: q * (1 - q)), "only the second robot"),
+    (check_kicks_needed, of_each(lambda p, q: p + q), "not p$"),
+    (
+        check_kicks_needed,
+        of_each(lambda p, q: (math.sqrt(p - p * p) + math.sqrt(q - q * q)) ** 2),
+        "the variances are added",
+    ),
+    (
+        check_kicks_needed,
+        lambda p, q, z: math.ceil(z * (p * (1 - p) + q * (1 - q)) / (p - q) ** 2),
+        "number of them comes in squared",
+    ),
+    (
+        check_kicks_needed,
+        lambda p, q, z: math.ceil(z**2 * (p * (1 - p) + q * (1 - q)) / abs(p - q)),
+        "the difference comes in squared",
+    ),
+    (check_kicks_needed, lambda p, q, z: z**2 / (p - q) ** 2, "kicks are whole"),
+    (check_kicks_needed, lambda p, q, z: kicks_needed(p, q, 2 * z), "0 of 12 tries"),
+    (check_kicks_needed, lambda p, q, z: [kicks_needed(p, q, z)], r"shape \(\), not \(1,\)"),
+    (check_kicks_needed, not_written, "still empty"),
     (check_worth, lambda *case: worth(*case)[::-1], "the turn second"),
     (check_worth, kicking(lambda p, g, c: 100 * p + c), "not worth 0: it is punished by -100$"),
     (check_worth, kicking(lambda p, g, c: 100 * p), "and a kick takes a cycle"),
@@ -131,9 +138,11 @@ def test_the_bounds_hold_for_the_network_and_are_met_by_it(seed):
     assert count(np.concatenate([spaced, dense])) == fewest
 
 
-def test_kicks_drawn_at_random_score_as_often_as_the_formula_says():
+def test_so_many_kicks_leave_the_worse_ahead_as_seldom_as_the_sigmas_say():
     rng = np.random.default_rng(0)
-    distance, orientation, sigma = 1850.0, 0.2, 0.25
-    bearing = -orientation + sigma * rng.standard_normal(100_000)  # from straight at the line
-    share = (np.abs(distance * np.tan(bearing)) < 400).mean()
-    assert share == pytest.approx(scoring(distance, orientation, sigma), abs=0.006)
+    p, q = 0.6, 0.35
+    n = kicks_needed(p, q, 2.0)
+    better, worse = rng.binomial(n, [[p], [q]], (2, 50_000))
+    # Two sigmas below: .023 of a normal distribution; ties are split.
+    behind = (better < worse).mean() + (better == worse).mean() / 2
+    assert behind == pytest.approx(0.023, abs=0.004)

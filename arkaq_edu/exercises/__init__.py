@@ -13,7 +13,7 @@ from .kalman import check_combine, check_nis, check_turn
 from .learning import check_discounted_sum, check_epsilon_greedy, check_finite_sum, check_regret
 from .mdp import check_bellman, check_greedy, check_rate, check_td
 from .pomdp import check_best, check_lead, check_two_steps
-from .scoring import check_scoring, check_state_bounds, check_worth
+from .scoring import check_kicks_needed, check_state_bounds, check_worth
 from .segmentation import check_nearest, check_present, check_scale
 
 __all__ = [
@@ -33,6 +33,7 @@ __all__ = [
     "check_expected_reward",
     "check_finite_sum",
     "check_greedy",
+    "check_kicks_needed",
     "check_lead",
     "check_match",
     "check_nearest",
@@ -45,7 +46,6 @@ __all__ = [
     "check_regret",
     "check_reward",
     "check_scale",
-    "check_scoring",
     "check_state_bounds",
     "check_td",
     "check_turn",

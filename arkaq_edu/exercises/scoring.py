@@ -1,118 +1,17 @@
-"""Checks for the notebook on scoring goals: how likely a kick scores, and what a turn is worth."""
+"""Checks for the notebook on scoring goals: states on a line, what a turn is worth, and luck."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import atan, floor
+from math import ceil, floor
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import norm
 
 from ._ask import ExerciseError, Rule, ask, judge, numbers
 
 Rng = np.random.Generator | int | None
-
-_HALF = 400.0  # of the goal (mm)
-
-
-def check_scoring(scoring: Callable[..., Any], rng: Rng = None) -> str:
-    """Check a student's ``scoring(distance, orientation, sigma)``: the chance that a kick scores.
-
-    Parameters
-    ----------
-    scoring : callable
-        Takes how far before the middle of an 800 mm goal the robot stands (mm), the goal's
-        orientation (rad) and the standard deviation of the kick's bearing (rad).
-    rng : numpy.random.Generator or int, optional
-        Where the random kicks come from.
-
-    Returns
-    -------
-    str
-        A line of praise.
-
-    Raises
-    ------
-    ExerciseError
-        With the way in which the answer is wrong.
-
-    References
-    ----------
-    Thesis, section 5.3.
-
-    Examples
-    --------
-    >>> check_scoring(lambda distance, orientation, sigma: 0.6)
-    Traceback (most recent call last):
-    arkaq_edu.exercises._ask.ExerciseError: the answer does not change with what is given
-    """
-    rng = np.random.default_rng(rng)
-    cases = [
-        (rng.uniform(900, 3000), side * rng.uniform(0.1, 0.3), rng.uniform(0.15, 0.4))
-        for side in (1, -1) * 6
-    ]
-    answers = [float(numbers("scoring", ask(scoring, *case), ())) for case in cases]
-    if np.ptp(answers) < 1e-9:
-        why = ", it is always 1: do degrees meet radians?" if np.isclose(answers[0], 1) else ""
-        raise ExerciseError("the answer does not change with what is given" + why)
-    judge("scoring", scoring, cases, _scoring, WRONG_SCORING)
-    return "Right: the goal is an interval of bearings, and the kick fills part of it."
-
-
-def _between(low: float, high: float, sigma: float) -> float:
-    return float(norm.cdf(high / sigma) - norm.cdf(low / sigma))
-
-
-def _scoring(distance: float, orientation: float, sigma: float) -> float:
-    half = atan(_HALF / distance)
-    return _between(orientation - half, orientation + half, sigma)
-
-
-# What is often done instead, and what to say of it.
-WRONG_SCORING: list[Rule] = [
-    (
-        lambda d, o, s: _between(-atan(_HALF / d), atan(_HALF / d), s),
-        "your robot always looks straight at the goal: where does the orientation come in?",
-    ),
-    (
-        lambda d, o, s: _between(o - atan(2 * _HALF / d), o + atan(2 * _HALF / d), s),
-        "your goal is twice too wide: its posts stand 400 mm to either side of its middle",
-    ),
-    (
-        lambda d, o, s: _between(o - atan(_HALF / 2 / d), o + atan(_HALF / 2 / d), s),
-        "your goal is half too narrow: its posts stand 400 mm to either side of its middle",
-    ),
-    (
-        lambda d, o, s: _between(o - _HALF / d, o + _HALF / d, s),
-        "400 / distance is the tangent of the angle from the middle to a post, not the angle",
-    ),
-    (
-        lambda d, o, s: float(norm.cdf((o + atan(_HALF / d)) / s)),
-        "you count every ball to the right of the left post: those right of the right post miss",
-    ),
-    (
-        lambda d, o, s: float(norm.cdf((o - atan(_HALF / d)) / s)),
-        "you count the balls to the right of the right post: these miss",
-    ),
-    (
-        lambda d, o, s: 1 - _scoring(d, o, s),
-        "that is the chance of a miss",
-    ),
-    (
-        lambda d, o, s: _between(o - atan(_HALF / d), o + atan(_HALF / d), s**2),
-        "you divide by the variance: an angle is counted in standard deviations",
-    ),
-    (
-        lambda d, o, s: _between(o - atan(_HALF / d), o + atan(_HALF / d), 1.0),
-        "the kick's sigma does not come in: how many sigmas away is each post?",
-    ),
-    (
-        lambda d, o, s: 100 * _scoring(d, o, s),
-        "a chance lies between 0 and 1: yours is in per cent",
-    ),
-]
 
 
 def check_worth(worth: Callable[..., Any], rng: Rng = None) -> str:
@@ -301,5 +200,100 @@ WRONG_STATE_BOUNDS: list[Rule] = [
     (
         lambda v, w: np.array([floor(w / v) + 1, floor(w / v) + 1], dtype=float),
         "your two bounds are the same: can centres not stand farther apart than one vigilance?",
+    ),
+]
+
+
+def check_kicks_needed(kicks_needed: Callable[..., Any], rng: Rng = None) -> str:
+    """Check a student's ``kicks_needed(p, q, sigmas)``: kicks until two shares can be told apart.
+
+    Parameters
+    ----------
+    kicks_needed : callable
+        Takes the chances with which two robots score, and how many standard errors are to lie
+        between their shares; returns the smallest number of kicks, of each of them, that does.
+    rng : numpy.random.Generator or int, optional
+        Where the random chances come from.
+
+    Returns
+    -------
+    str
+        A line of praise.
+
+    Raises
+    ------
+    ExerciseError
+        With the way in which the answer is wrong.
+
+    References
+    ----------
+    Thesis, section 5.3.2, figures 5.40 and 5.41.
+
+    Examples
+    --------
+    >>> check_kicks_needed(lambda p, q, sigmas: 29.4)
+    Traceback (most recent call last):
+    arkaq_edu.exercises._ask.ExerciseError: kicks are whole, 29.4 of them cannot be: how many are \
+enough?
+    """
+    rng = np.random.default_rng(rng)
+    cases = [(0.6, 0.35, 2.0)]
+    while len(cases) < 12:
+        p, q, sigmas = rng.uniform(0.05, 0.95), rng.uniform(0.05, 0.95), rng.uniform(1.5, 3.5)
+        # Where the whole numbers above and below are far apart in what they say.
+        if abs(p - q) > 0.05 and 0.1 < _enough(p, q, sigmas) % 1 < 0.9:
+            cases.append((p, q, sigmas))
+    for case in cases:
+        found = float(numbers("kicks_needed", ask(kicks_needed, *case), ()))
+        if found != round(found):
+            raise ExerciseError(
+                f"kicks are whole, {found:.4g} of them cannot be: how many are enough?"
+            )
+    judge("kicks_needed", kicks_needed, cases, _kicks_needed, WRONG_KICKS_NEEDED)
+    return "Right: what is twice as near takes four times as many kicks to tell apart."
+
+
+def _enough(p: float, q: float, sigmas: float) -> float:
+    return sigmas**2 * (p * (1 - p) + q * (1 - q)) / (p - q) ** 2
+
+
+def _kicks_needed(p: float, q: float, sigmas: float) -> int:
+    return ceil(_enough(p, q, sigmas))
+
+
+WRONG_KICKS_NEEDED: list[Rule] = [
+    (
+        lambda p, q, sigmas: floor(_enough(p, q, sigmas)),
+        "you round down: that many are not quite enough",
+    ),
+    (
+        lambda p, q, sigmas: 2 * _kicks_needed(p, q, sigmas),
+        "that is the kicks of both robots together: each needs half of them",
+    ),
+    (
+        lambda p, q, sigmas: ceil(sigmas**2 * p * (1 - p) / (p - q) ** 2),
+        "only the first robot has luck in your formula: both have",
+    ),
+    (
+        lambda p, q, sigmas: ceil(sigmas**2 * q * (1 - q) / (p - q) ** 2),
+        "only the second robot has luck in your formula: both have",
+    ),
+    (
+        lambda p, q, sigmas: ceil(_enough(p, q, sigmas) / sigmas),
+        "the standard error falls with the root of n: so the number of them comes in squared",
+    ),
+    (
+        lambda p, q, sigmas: ceil(_enough(p, q, sigmas) * abs(p - q)),
+        "the standard error falls with the root of n: so the difference comes in squared",
+    ),
+    (
+        lambda p, q, sigmas: ceil(
+            sigmas**2 * (np.sqrt(p * (1 - p)) + np.sqrt(q * (1 - q))) ** 2 / (p - q) ** 2
+        ),
+        "you add standard errors: of two that are independent the variances are added",
+    ),
+    (
+        lambda p, q, sigmas: ceil(sigmas**2 * (p + q) / (p - q) ** 2),
+        "the variance of one kick, which scores or does not, is p (1 - p), not p",
     ),
 ]
