@@ -251,10 +251,41 @@ class MovingWalk:
 
     def _repr_png_(self) -> bytes:
         """Return a PNG of many frames, which browsers play."""
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "walk.png"
-            animate_walk(self.walk).save(path, PillowWriter(FRAMES_PER_SECOND), dpi=_DPI)
-            return path.read_bytes()
+        return _png(animate_walk(self.walk))
+
+
+@dataclass(frozen=True)
+class MovingShot:
+    """A shot that moves in a notebook, and in a stored one without a kernel too.
+
+    Parameters
+    ----------
+    shot : Shot
+        The shot.
+
+    Examples
+    --------
+    >>> from arkaq_edu.experiments import goal
+    >>> MovingShot(goal.shoot(goal.load_agent(), orientation=-0.3))
+    the goal 0.30 rad right, 1 turn: a goal
+    """
+
+    shot: Shot
+
+    def __repr__(self) -> str:
+        """Return how the shot went."""
+        return how_the_shot_went(self.shot)
+
+    def _repr_png_(self) -> bytes:
+        """Return a PNG of many frames, which browsers play."""
+        return _png(animate_shot(self.shot))
+
+
+def _png(animation: FuncAnimation) -> bytes:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "frames.png"
+        animation.save(path, PillowWriter(FRAMES_PER_SECOND), dpi=_DPI)
+        return path.read_bytes()
 
 
 def _on_field(look, distance: float, orientation: float) -> tuple[list[float], list[float]]:
