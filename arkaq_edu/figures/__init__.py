@@ -13,7 +13,9 @@ __getattr__, __dir__, __all__ = _lazy.attach(
         "trajectories",
     ],
     submod_attrs={
-        "animation": ["MovingShot", "MovingWalk", "animate_shot", "animate_walk", "save_shot", "save_walk"],
+        "animation": [
+            "MovingShot", "MovingWalk", "animate_shot", "animate_walk", "save_shot", "save_walk",
+        ],
         "gallery": ["FIGURES", "draw"],
     },
 )  # fmt: skip

@@ -22,6 +22,11 @@ from ..figures import style
 from .explorer import Explorer
 from .scene import Cells, Layer, Line, Panel, Points, Scene, Text
 
+#: Where the slider of vigilance stops: from many states to a single one.
+VIGILANCES = (
+    0.02, 0.03, 0.04, 0.05, 0.06, 0.075, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.2,
+)  # fmt: skip
+
 _SHOWN = 120  # kicks of the fan
 _COLORS = [style.ACTIONS[action] for action in ("left", "right", "kick")]
 _SIGNS = ("←", "→", "●")
@@ -77,8 +82,8 @@ def scoring_explorer(patterns: ArrayLike | None = None) -> Explorer:
             1.0, min=0.0, max=2.0, step=0.1, readout_format=".1f",
             description="kick's spread", **wide,
         ),
-        vigilance=ipywidgets.FloatSlider(
-            0.06, min=0.02, max=0.4, step=0.005, readout_format=".3f",
+        vigilance=ipywidgets.SelectionSlider(
+            options=[(f"{stop:g}", stop) for stop in VIGILANCES], value=0.06,
             description="vigilance", **wide,
         ),
     )  # fmt: skip
@@ -104,10 +109,9 @@ def draw(
     -------
     Scene
     """
-    vigilance = round(vigilance, 3)  # a slider's steps add up to 0.15000000000000002
     found = EuclideanART(vigilance, Learning.goal().learning_rate).fit(patterns).cluster_centers_
     centers = np.sort(found, axis=0)
-    ways = aiming.spread_out(aiming.kicked_ways(), round(spread, 1))
+    ways = aiming.spread_out(aiming.kicked_ways(), spread)
     scores = aiming.chances(ways, distance)
     actions = aiming.plan(scores, centers)
     prospects = aiming.prospects(scores, actions[aiming.category(centers, aiming.GRID)])
@@ -178,7 +182,7 @@ def _shares(
             Text(left - 0.09, up, name, color),
         ]
     return Panel(
-        "orientation of the goal (rad);  ← turn left   → turn right   ● kick",
+        "orientation (rad);  ← turn left   → turn right   ● kick",
         "goals (%)", (high, low), (_FOOT, 130.0), layers,
         xticks=[0.4, 0.2, 0.0, -0.2, -0.4], yticks=[0, 20, 40, 60, 80, 100],
     )  # fmt: skip
