@@ -197,6 +197,7 @@ def plot_learning(agent: Arkaq, ax: Axes | None = None, *, window: int = 50) -> 
     (curve,) = ax.plot(cycles[window - 1 :], mean, color=style.OURS)
     start = agent.learning.exploration
     switch = ax.axvline(start, color=style.QUIET, ls="--", lw=1)
-    ax.text(start, 2, " exploits from here", color=style.QUIET)
-    ax.set(ylim=(0, 155), xlim=(0, None))
+    low, high = min(0.0, mean.min() - 5), 155 if rewards.max() > 100 else 105  # of either task
+    ax.text(start, low + 2, " exploits from here", color=style.QUIET)
+    ax.set(ylim=(low, high), xlim=(0, None))
     return LearningPlot(ax, curve, switch)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from functools import partial
 from itertools import pairwise
-from typing import Any
 
 import ipywidgets
 import numpy as np
@@ -19,7 +18,7 @@ from ..experiments.goal import load_orientations
 from ..experiments.goal import patterns as recorded_patterns
 from ..field import pitch
 from ..figures import style
-from .explorer import Explorer
+from .explorer import Explorer, wide
 from .scene import Cells, Layer, Line, Panel, Points, Scene, Text
 
 #: Where the slider of vigilance stops: from many states to a single one.
@@ -70,21 +69,20 @@ def scoring_explorer(patterns: ArrayLike | None = None) -> Explorer:
     """
     patterns = recorded_patterns(load_orientations()) if patterns is None else patterns
     stream = _checks.array("patterns", patterns, (None, 1))
-    wide: dict[str, Any] = {"layout": {"width": "min(100%, 36em)"}}
-    wide["style"] = {"description_width": "8em"}
+    look = wide("8em")
     return Explorer(
         partial(draw, stream),
         distance=ipywidgets.IntSlider(
             int(STARTS["near"].distance), min=1000, max=3000, step=50,
-            description="distance (mm)", **wide,
+            description="distance (mm)", **look,
         ),
         spread=ipywidgets.FloatSlider(
             1.0, min=0.0, max=2.0, step=0.1, readout_format=".1f",
-            description="kick's spread", **wide,
+            description="kick's spread", **look,
         ),
         vigilance=ipywidgets.SelectionSlider(
             options=[(f"{stop:g}", stop) for stop in VIGILANCES], value=0.06,
-            description="vigilance", **wide,
+            description="vigilance", **look,
         ),
     )  # fmt: skip
 
