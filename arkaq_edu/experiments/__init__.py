@@ -3,6 +3,7 @@
 - `streams`: sightings recorded on the field, and what they say of the senses;
 - `approach`: training, walking to the ball, and how well it is done;
 - `goal`: training, kicking, and how well it is done: the second problem;
+- `aiming`: where kicks go, kept and laid before any goal: the second problem without its physics;
 - `reproduce`: thesis against here, over many seeds;
 - `kicks`: kicks of a real robot, and simulated ones.
 """
@@ -11,7 +12,7 @@ import lazy_loader as _lazy
 
 __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
-    submodules=["goal"],
+    submodules=["aiming", "goal"],
     submod_attrs={
         "approach": [
             "STARTS",
