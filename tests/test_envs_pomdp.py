@@ -102,6 +102,15 @@ def test_many_walkers_step_as_one_does():
     frequencies = np.histogram2d(s, z, bins=[np.arange(3), np.arange(4)])[0] / n
     np.testing.assert_allclose(frequencies, pomdp.T[0, 0][:, None] * pomdp.O[0], atol=0.015)
     assert (r == -1).all() and not terminated.any()
+
+
+def test_observations_that_sum_to_nearly_one_are_never_drawn_past():
+    class Last(np.random.Generator):
+        def random(self, size=None):
+            return np.full(size, np.nextafter(1, 0))
+
+    pomdp = POMDP([np.eye(2)], [[[0.5, 0.5 - 8e-10, 0.0]] * 2], [[1.0], [0.0]], 0.9)
+    assert pomdp.step([0, 1], 0, rng=Last(np.random.PCG64(0)))[1].tolist() == [1, 1]
     for s, a in ((2, 0), (0, 3), (-1, 0)):
         with pytest.raises(ValueError, match="must hold integers in"):
             pomdp.step(s, a, rng=0)

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 
 from arkaq_edu.mdp import policy_iteration
 from arkaq_edu.pomdp import POMDP, belief_update, problem, solve_point_based, solve_pomdp
-from arkaq_edu.pomdp.bounds import fast_informed_bound
+from arkaq_edu.pomdp.bounds import _Rows, _Search, fast_informed_bound
 
 
 @st.composite
@@ -132,6 +132,25 @@ def test_the_informed_bound_is_between_v_star_and_the_mdp(pomdp):
     rest = pomdp.gamma**4 * np.abs(pomdp.R).max() / (1 - pomdp.gamma)
     beliefs = beliefs_of(pomdp, np.random.default_rng(0))
     assert (exact.value(beliefs) - rest <= (beliefs @ vectors.T).max(axis=1) + slack).all()
+
+
+@settings(max_examples=20, deadline=None)
+@given(pomdp=small_pomdps())
+def test_the_upper_bound_is_nowhere_above_the_informed_one(pomdp):
+    beliefs = beliefs_of(pomdp, np.random.default_rng(0))
+    informed = (beliefs @ fast_informed_bound(pomdp).T).max(axis=1)
+    found = solve_point_based(pomdp, max_backups=3)
+    assert (found.upper(beliefs) <= informed + 1e-9 * np.abs(informed).max()).all()
+
+
+def test_a_plan_goes_on_with_who_dominates_its_dominator():
+    search = _Search(POMDP([np.eye(2)], np.ones((1, 2, 1)), [[0.0], [0.0]], 0.9))
+    search.alphas = _Rows(np.array([[0.0, 0], [1, 1], [5, 0], [2, 2]]))
+    search.actions, search.branches = _Rows(np.zeros(4, int)), _Rows(np.array([[0], [1], [0], [1]]))
+    search.many_vectors = 3
+    search.tidy()
+    assert search.alphas.now.tolist() == [[5, 0], [2, 2]]
+    assert search.branches.now.tolist() == [[1], [1]]
 
 
 def test_the_same_model_gives_the_same_bytes():

@@ -485,6 +485,11 @@ def plot_calibration(
     -------
     CalibrationPlot
 
+    Raises
+    ------
+    ValueError
+        If there are more than two.
+
     Examples
     --------
     >>> from matplotlib.figure import Figure
@@ -493,6 +498,8 @@ def plot_calibration(
     >>> plot.lines["honest"].get_ydata()
     array([0.5, 0.9])
     """
+    if len(curves) > 2:
+        raise ValueError(f"curves must hold at most 2 names, got {[*curves]}")
     ax = style.axes(ax, xlabel="what the belief claims", ylabel="how often it is so", title=title)
     ax.plot([0, 1], [0, 1], "--", color=style.QUIET, linewidth=1)
     lines, bands, least = {}, {}, 1.0

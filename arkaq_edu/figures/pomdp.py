@@ -615,7 +615,8 @@ def figure_2_14(ax: Axes | None = None, *, horizon: int = 6) -> SurfacePlot:
     """
     V = solved("two_state", horizon)
     plans, _ = upper_surface(V.alphas)
-    title = f"{horizon} steps to go: a value over every belief, in {len(plans)} pieces"
+    steps = f"{horizon} step{'s' * (horizon > 1)}"
+    title = f"{steps} to go: a value over every belief, in {len(plans)} pieces"
     ax = _belief_axes(ax, problem("two_state"), title)
     (surface,) = ax.plot(*surface_line(V.alphas), color=style.INK, linewidth=3)
     _tag(ax, (0.12, V.value([0.12, 0.88])), "$V(b)$", (8, 4))
