@@ -1,17 +1,20 @@
 """The figures of the goal problem: what is drawn is what was computed."""
 
+import io
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from PIL import Image
 
 from arkaq_edu.arkaq import GOAL_Q_LEARNING, GOAL_SEGMENTATION, Arkaq
 from arkaq_edu.art import EuclideanART
 from arkaq_edu.envs.score_goal import ACTIONS
 from arkaq_edu.experiments import goal, load_agent
-from arkaq_edu.figures import FIGURES, animation, automata, style
+from arkaq_edu.figures import FIGURES, animation, automata, policy, style
 from arkaq_edu.figures import goal as figures
 
 GOAL_PROBLEM = [f"5.{n}" for n in (34, 35, 36, 37, 38, 39, 40, 41)]
@@ -155,3 +158,15 @@ def test_the_film_of_a_shot_says_what_happened(agent, tmp_path):
     assert said.endswith("a goal" if shot.is_success else "a miss")
     with pytest.raises(ValueError, match=r"\.gif or \.html"):
         animation.save_shot(shot, tmp_path / "shot.avi")
+    moving = animation.MovingShot(shot)
+    assert repr(moving) == said
+    with Image.open(io.BytesIO(moving._repr_png_())) as film:
+        # Frames that show the same become one, which stays longer.
+        assert 10 < film.n_frames <= len(shot.frames)
+
+
+def test_a_punished_episode_is_not_cut_off(agent):
+    plot = policy.plot_learning(agent, Figure().subplots())
+    low, high = plot.ax.get_ylim()
+    rewards = plot.curve.get_ydata()
+    assert low < rewards.min() < 0 < rewards.max() < high
