@@ -8,8 +8,8 @@ import lazy_loader as _lazy
 __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
     submodules=[
-        "animation", "art", "automata", "belief", "diagram", "distance", "field", "gallery", "goal",
-        "kalman", "learning", "mdp", "policy", "pomdp", "scenes", "segmentation", "style",
+        "agent", "animation", "art", "automata", "belief", "diagram", "distance", "field", "gallery",
+        "goal", "kalman", "learning", "mdp", "policy", "pomdp", "scenes", "segmentation", "style",
         "trajectories",
     ],
     submod_attrs={

@@ -15,6 +15,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from . import (
+    agent,
     art,
     automata,
     belief,
@@ -32,6 +33,7 @@ from . import (
 )
 
 _ROOMS = (
+    agent,
     learning,
     mdp,
     art,
