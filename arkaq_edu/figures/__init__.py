@@ -8,9 +8,9 @@ import lazy_loader as _lazy
 __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
     submodules=[
-        "agent", "animation", "art", "automata", "belief", "diagram", "distance", "field", "gallery",
-        "goal", "kalman", "learning", "mdp", "policy", "pomdp", "scenes", "segmentation", "style",
-        "trajectories",
+        "agent", "animation", "art", "automata", "belief", "diagram", "distance", "field",
+        "gallery", "goal", "kalman", "learning", "mdp", "policy", "pomdp", "scenes",
+        "segmentation", "style", "trajectories",
     ],
     submod_attrs={
         "animation": [
