@@ -463,6 +463,14 @@ class Turret(gymnasium.Env):
         return self.look(), reward, over, False, {"is_success": goal}
 
 
+@pytest.mark.parametrize(("task", "other"), [("ball", Turret), ("goal", Corridor)])
+def test_an_environment_of_the_other_task_is_refused(task, other):
+    agent = Arkaq(0.06, task=task, rng=0)
+    for learn in (agent.segment, agent.learn):
+        with pytest.raises(ValueError, match="env must give observations of shape"):
+            learn(other(), progress=False)
+
+
 def test_values_of_the_goal_problem_are_those_of_the_process_where_nothing_is_random():
     law = Learning.goal(
         patterns=200, exploration=6000, exploitation=0, gamma=0.9, alpha_power=0.0,

@@ -252,6 +252,10 @@ def test_a_shot_is_a_film_of_what_the_agent_does():
     [
         (lambda: goal.train(goal_distance="close"), "goal_distance must be 'near' or 'far'"),
         (lambda: goal.load_agent("close"), "goal_distance must be 'near' or 'far'"),
+        (lambda: goal.load_kick_trials("close"), "goal_distance must be 'near' or 'far'"),
+        (lambda: goal.best_policy("close"), "goal_distance must be 'near' or 'far'"),
+        (lambda: goal.kick_trials("close", [0.0]), "goal_distance must be 'near' or 'far'"),
+        (lambda: goal.rates(goal.load_study(), last=0), "last must be an integer >= 50, got 0"),
         (lambda: goal.record_orientations(n=0), "n must be an integer >= 1, got 0"),
         (lambda: goal.record_orientations(period=0), "period must be"),
         (lambda: goal.shots(goal.oracle(), 0), "n must be"),

@@ -335,6 +335,8 @@ def test_a_generator_or_its_seed_is_the_same():
         (lambda: World().reset((0, 0, 0), (0, -2001)), "ball.*-2001"),
         (lambda: World().reset((0, 0, math.inf), (0, 0)), "robot"),
         (lambda: World().kick_off((math.nan, 0)), "velocity"),
+        (lambda: World().put_ball(3001, 0), "ball must stand on the carpet.*3001"),
+        (lambda: World().put_ball(math.nan, 0), "ball must stand on the carpet.*nan"),
         (lambda: Legs(variation=-0.1), "variation"),
         (lambda: Legs(slide=2), "slide"),
         (lambda: Legs(pull=0.1), "pull"),

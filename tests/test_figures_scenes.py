@@ -102,6 +102,8 @@ def test_during_the_kick_the_ball_rolls(ax):
         assert np.hypot(*(ball - begin)) == pytest.approx(rolled, abs=15)
         assert rolled > before
         before = rolled
+    with pytest.raises(ValueError, match="after must be a number"):
+        scenes.figure_5_32(ax, after=60)
 
 
 def test_a_missed_goal_is_one(ax):

@@ -199,6 +199,15 @@ def test_a_kick_says_how_far_and_whether_it_was_a_goal():
     assert drive.told == "the paw met no ball" and drive.world.ball == BALL
 
 
+def test_before_a_wall_there_is_no_room_for_the_ball():
+    drive = Drive()
+    drive.do([Deed("5 steps", 190, 190, 0.0)] * 4)
+    x, y, heading = drive.world.pose
+    assert abs(x + 245 * np.cos(heading)) > 3000 or abs(y + 245 * np.sin(heading)) > 2000
+    drive.do([*drive.deeds, Deed("ball to the paw", 0, 0, 0)])
+    assert drive.told == "no room for the ball before the paw" and drive.world.ball == BALL
+
+
 def test_a_wall_stops_it(panel):
     set_all(panel, left=190, right=190, deeds=[Deed("5 steps", 190, 190, 0.0)] * 12)
     words = layers(panel.drawn.panels[1], Text)[1].text

@@ -203,7 +203,8 @@ class Arkaq:
         Raises
         ------
         ValueError
-            If `checkpoint` holds another run: other settings or another seed.
+            If `checkpoint` holds another run: other settings or another seed; if the environment
+            is of another task.
         RuntimeError
             If what is to be seen, the ball or the goal, never is.
         """
@@ -393,6 +394,12 @@ class _Phase:
     unit: str
 
     def __init__(self, agent: Arkaq, env: gymnasium.Env, keeper: _Keeper, progress: bool) -> None:
+        wanted, given = (len(agent.sensing.low) + 1,), env.observation_space.shape
+        if given != wanted:
+            raise ValueError(
+                f"env must give observations of shape {wanted}, the measurements and whether there "
+                f"was a sighting, got {given}"
+            )
         self.agent, self.env, self.keeper = agent, env, keeper
         self.law, self.senses = agent.learning, agent._senses
         self.bar = tqdm(

@@ -41,6 +41,12 @@ _LEARNING_FAR = Learning.goal(exploration=1000, exploitation=11_000)
 _COLUMNS = ["episode", "cycle", "action", "orientation", "visible", "true_orientation"]
 
 
+def _known(goal_distance: str) -> str:
+    if goal_distance not in STARTS:
+        raise ValueError(f"goal_distance must be 'near' or 'far', got {goal_distance!r}")
+    return goal_distance
+
+
 class LookAround(gymnasium.Wrapper):
     """The goal task without the kick: every episode begins straight before the goal.
 
@@ -133,8 +139,7 @@ def train(
     >>> train(seed=1, learning=brief, progress=False).q.Q.shape[1]
     3
     """
-    if goal_distance not in VIGILANCE:
-        raise ValueError(f"goal_distance must be 'near' or 'far', got {goal_distance!r}")
+    _known(goal_distance)
     vigilance = VIGILANCE[goal_distance] if vigilance is None else vigilance
     if learning is None:
         learning = Learning.goal() if goal_distance == "near" else _LEARNING_FAR
@@ -152,8 +157,7 @@ def load_agent(goal_distance: Distance = "near") -> Arkaq:
     >>> load_agent("far").vigilance
     0.05
     """
-    if goal_distance not in VIGILANCE:
-        raise ValueError(f"goal_distance must be 'near' or 'far', got {goal_distance!r}")
+    _known(goal_distance)
     return Arkaq.load(data_file(f"goal_{goal_distance}.npz"))
 
 
@@ -350,7 +354,7 @@ def kick_trials(
     np.True_
     """
     if isinstance(goal_distance, str):
-        goal_distance = STARTS[goal_distance].distance
+        goal_distance = STARTS[_known(goal_distance)].distance
     supervisor = GoalSupervisor(goal_distance)
     world, rows = World(), []
     for orientation in np.atleast_1d(np.asarray(orientations, dtype=float)).tolist():
@@ -374,7 +378,7 @@ def load_kick_trials(goal_distance: Distance) -> pd.DataFrame:
     25000
     """
     trials = pd.read_csv(data_file("goal_kicks.csv"))
-    chosen = trials[trials.goal_distance == goal_distance]
+    chosen = trials[trials.goal_distance == _known(goal_distance)]
     return chosen.drop(columns="goal_distance").reset_index(drop=True)
 
 
@@ -440,6 +444,7 @@ def best_policy(
     >>> bool(best.random < best.goals <= best.chance.max())
     True
     """
+    start = STARTS[_known(goal_distance)]
     trials = load_kick_trials(goal_distance) if trials is None else trials
     sensing = Sensing.goal()
     turn, spread = sensing.B[0][TURN_RIGHT], float(np.sqrt(sensing.Q[0][0]))
@@ -460,7 +465,6 @@ def best_policy(
         # Where two do the same, kick rather than turn.
         value = choices.max(axis=0)
         actions.append(np.where(choices[KICK] >= value - 1e-12, KICK, choices.argmax(axis=0)))
-    start = STARTS[goal_distance]
     off = np.linspace(start.least, start.most, 2001)
     starts = np.concatenate([-off, off])
 
@@ -754,7 +758,8 @@ def rates(table: pd.DataFrame, last: int = 200) -> pd.DataFrame:
     table : DataFrame
         As `play` or `study` returns it.
     last : int
-        How many of the last kicks count of the agent that learns; of the others all count.
+        How many of the last kicks count of the agent that learns, at least a row's 50; of the
+        others all count.
 
     Returns
     -------
@@ -768,6 +773,7 @@ def rates(table: pd.DataFrame, last: int = 200) -> pd.DataFrame:
     True
     """
     end = table.groupby(["goal_distance", "who", "seed"]).kicks.transform("max")
+    last = _checks.integer("last", last, BLOCK)
     counted = table[(table.who != "ARKAQ") | (table.kicks > end - last)]
     share = 100 * counted.groupby(["seed", "goal_distance", "who"]).goals.mean() / BLOCK
     return share.unstack(["goal_distance", "who"])

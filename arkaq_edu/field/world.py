@@ -55,6 +55,15 @@ class Legs:
         _checks.number("variation", self.variation, 0, 0.5)
 
 
+def _check_on_carpet(name: str, x: float, y: float) -> None:
+    # So put that not-a-number is refused as well.
+    if not (abs(x) <= pitch.CARPET_LENGTH / 2 and abs(y) <= pitch.CARPET_WIDTH / 2):
+        raise ValueError(
+            f"{name} must stand on the carpet (|x| <= {pitch.CARPET_LENGTH / 2:g}, "
+            f"|y| <= {pitch.CARPET_WIDTH / 2:g} mm), got ({x:g}, {y:g})"
+        )
+
+
 class World:
     """The field with one robot and one ball, seen from above.
 
@@ -137,12 +146,8 @@ class World:
         """
         rx, ry, heading = _checks.array("robot", robot, (3,)).tolist()
         bx, by = _checks.array("ball", ball, (2,)).tolist()
-        for name, x, y in (("robot", rx, ry), ("ball", bx, by)):
-            if abs(x) > pitch.CARPET_LENGTH / 2 or abs(y) > pitch.CARPET_WIDTH / 2:
-                raise ValueError(
-                    f"{name} must stand on the carpet (|x| <= {pitch.CARPET_LENGTH / 2:g}, "
-                    f"|y| <= {pitch.CARPET_WIDTH / 2:g} mm), got ({x:g}, {y:g})"
-                )
+        _check_on_carpet("robot", rx, ry)
+        _check_on_carpet("ball", bx, by)
         self.space = pymunk.Space()
         self._build_walls()
         self._robot, self._control = self._build_robot(rx, ry, heading)
@@ -226,7 +231,14 @@ class World:
         return left if left > 1e-9 else 0.0
 
     def put_ball(self, x: float, y: float) -> None:
-        """Put the ball elsewhere (mm), at rest."""
+        """Put the ball elsewhere (mm), at rest.
+
+        Raises
+        ------
+        ValueError
+            If it would lie outside the carpet.
+        """
+        _check_on_carpet("ball", x, y)
         self.space.remove(self._ball, *self._ball.shapes, *self._ball.constraints)
         self._ball = self._build_ball(x, y)
 

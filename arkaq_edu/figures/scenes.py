@@ -285,7 +285,8 @@ def figure_5_32(ax: Axes | None = None, *, after: float = 0.25) -> Picture:
     ax : matplotlib.axes.Axes, optional
         Where to draw; fresh axes where it is None.
     after : float
-        How long after the beginning of the swing (s); with .06 the paw is still on its way.
+        How long after the beginning of the swing (s), in [0, 3]; with .06 the paw is still on its
+        way.
 
     Returns
     -------
@@ -302,6 +303,7 @@ def figure_5_32(ax: Axes | None = None, *, after: float = 0.25) -> Picture:
     >>> figure_5_32(Figure().subplots(), after=0.05).ax.get_title(loc="left")
     'kicking, after 0.05 s: the paw is on its way'
     """
+    _checks.number("after", after, 0, 3)  # the ball rolls longer
     world, shots = _ready(seed=0), list[tuple[NDArray[np.uint8], float]]()
     begin, trail = world.time, [world.ball]
 

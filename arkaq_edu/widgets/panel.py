@@ -102,7 +102,7 @@ class Drive:
     world : World
         The field as the deeds have left it.
     told : str
-        What became of the last deed, if it was a kick.
+        What became of the last deed, if there is something to tell.
     trail, ball_trail : list of (x, y)
         Where the robot has been, and where the last kick drove the ball (mm).
 
@@ -152,8 +152,11 @@ class Drive:
         if deed.name == "wait 0.1 s":
             world.stand(_WAIT)
         elif deed.name == "ball to the paw":
-            self.supervisor.set_ball(world)
             self.ball_trail = []
+            try:
+                self.supervisor.set_ball(world)
+            except ValueError:  # the robot has its nose at the wall
+                self.told = "no room for the ball before the paw"
         elif deed.name == "kick":
             self._kick()
 
