@@ -316,6 +316,8 @@ def test_the_picture_shows_the_ball_where_it_came_to_rest_and_the_way_there():
     row, column = int((2000 - halfway[1]) * 0.15), int((halfway[0] + 3000) * 0.15)
     red, green, _ = (after[row, column].astype(int) - before[row, column]).tolist()
     assert red > 50 and red > green
+    env.reset(seed=0, options={"orientation": 0.45})
+    assert np.array_equal(env.render(), before), "a new episode wipes the way off"
 
 
 def test_a_film_shows_the_kick_from_the_paw_drawn_back_to_the_ball_at_rest():

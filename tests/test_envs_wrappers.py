@@ -84,3 +84,11 @@ def test_what_is_seen_changes_nothing_of_what_happens():
         told = [env.step(action)[1:] for action in (0, 1, 1, 2)]
         said.append(told)
     assert said[0] == said[1] == said[2]
+
+
+def test_the_heading_of_the_full_state_comes_round():
+    env = FullState(gymnasium.make(TASKS[1]))
+    env.reset(seed=0)
+    headings = np.array([env.step(0)[0][2] for _ in range(25)])
+    assert headings.min() < -3 < 3 < headings.max()
+    assert math.sin(headings[-1]) == pytest.approx(math.sin(env.unwrapped.world.pose[2]), abs=1e-6)

@@ -100,6 +100,4 @@ class FullState(gymnasium.ObservationWrapper, RecordConstructorArgs):
         world = self.unwrapped.world  # type: ignore[attr-defined]
         x, y, heading = world.pose
         heading = math.remainder(heading, 2 * math.pi)
-        space = self.observation_space
-        state = np.array([x, y, heading, *world.ball], dtype=np.float32)
-        return state.clip(space.low, space.high)  # type: ignore[attr-defined]
+        return np.array([x, y, heading, *world.ball], dtype=np.float32)

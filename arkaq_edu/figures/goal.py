@@ -275,8 +275,8 @@ def plot_scores(
     -------
     ScoresPlot
         ``means`` and ``bands`` (one standard deviation over the seeds) of ARKAQ and of random
-        actions, ``means`` of the oracle; ``best``, what no policy can exceed; ``thesis``, hollow,
-        near only.
+        actions, ``means`` of the oracle; ``best``, what no policy can exceed but by luck;
+        ``thesis``, hollow, near only.
     """
     from ..experiments import goal
 
