@@ -122,6 +122,8 @@ def train(
         shots = goal.shots(experiments.greedy(agent), 200, goal_distance, seed=10_000 + seed)
         done = f"goals in {shots.is_success.mean():.1%} of 200 fresh kicks"
     else:
+        if goal_distance != "near":
+            raise click.UsageError("--goal-distance is of score-goal")
         vigilance = 0.1 if vigilance is None else vigilance
         agent = experiments.train(seed, vigilance, sensing=kalman, checkpoint=out)
         judged = experiments.evaluate(experiments.greedy(agent), n=200, seed=10_000 + seed)

@@ -85,6 +85,7 @@ def test_watch_films_the_courses_own_agent(run, tmp_path):
         (["watch", "score-goal", "--goal-distance", "middle"], "--goal-distance"),
         (["train", "dance"], "dance"),
         (["train", "score-goal", "--kalman", "thesis"], "--kalman is of approach-ball"),
+        (["train", "--goal-distance", "far"], "--goal-distance is of score-goal"),
         (["watch", "--distance", "1e9"], "distance must be"),
         (["watch", "--out", "walk.txt"], ".gif"),
         (["watch", "begun.npz"], "agent must have learned"),

@@ -191,12 +191,15 @@ def test_the_curves_are_together_at_first_and_apart_later(study):
         assert apart.iloc[-4:].mean() > 0.18
 
 
-def test_training_again_gives_the_courses_agent_and_its_curve(study):
-    agent, kept = goal.train(0, progress=False), goal.load_agent("near")
+@pytest.mark.parametrize("distance", ["near", "far"])
+def test_training_again_gives_the_courses_agent_and_its_share_of_the_study(
+    study, distance, monkeypatch
+):
+    agent, kept = goal.train(0, goal_distance=distance, progress=False), goal.load_agent(distance)
     assert np.array_equal(agent.q.Q, kept.q.Q) and agent.history == kept.history
-    ours = study[(study.goal_distance == "near") & (study.seed == 0) & (study.who == "ARKAQ")]
-    again = goal.curve(goal.scored_while_learning(agent)[: goal.KICKS["near"]])
-    assert again.goals.tolist() == ours.goals.tolist()
+    monkeypatch.setattr(goal, "train", lambda *args, **options: agent)
+    ours = study[(study.goal_distance == distance) & (study.seed == 0)]
+    pd.testing.assert_frame_equal(goal.play(0, distance), ours.reset_index(drop=True))
 
 
 @pytest.mark.parametrize("distance", ["near", "far"])
