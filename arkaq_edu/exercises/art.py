@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..art import match_norm
-from ._ask import ExerciseError, ask, numbers
+from ._ask import ExerciseError, Rule, ask, numbers
 
 Rng = np.random.Generator | int | None
 Bits = NDArray[np.int64]
@@ -168,7 +168,6 @@ of u and of c p, added, not the norm of their sum
 
 
 # What is often done instead, and what to say of it.
-Rule = tuple[Callable[..., Any], str]
 WRONG_MATCH: list[Rule] = [
     (
         lambda x, z: (x & z).sum(),

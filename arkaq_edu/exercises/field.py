@@ -12,10 +12,9 @@ from scipy.stats import norm
 
 from ..field import pitch
 from ..field.camera import FOCAL_LENGTH
-from ._ask import ExerciseError, ask, judge, numbers
+from ._ask import ExerciseError, Rule, ask, judge, numbers
 
 Rng = np.random.Generator | int | None
-Rule = tuple[Callable[..., Any], str]
 
 STEPPED = "Right: two numbers a cycle, and the body is somewhere else."
 MEASURED = "Right: half the size, twice as far; and four times as far off."

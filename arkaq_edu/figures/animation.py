@@ -187,11 +187,14 @@ def how_the_shot_went(shot: Shot) -> str:
     >>> from arkaq_edu.experiments import goal
     >>> how_the_shot_went(goal.shoot(goal.load_agent(), 0.1)).split(",")[0]
     'the goal 0.10 rad left'
+    >>> how_the_shot_went(goal.shoot(goal.load_agent(), 0.0)).split(",")[0]
+    'the goal straight ahead'
     """
     start, turns = shot.table.orientation.iloc[0], int((shot.table.action.isin((0, 1))).sum())
-    side = "left" if start > 0 else "right"
+    aside = f"{abs(start):.2f} rad {'left' if start > 0 else 'right'}"
+    where = "straight ahead" if round(start, 2) == 0 else aside
     end = "a goal" if shot.is_success else "a miss"
-    return f"the goal {abs(start):.2f} rad {side}, {turns} turn{'s' * (turns != 1)}: {end}"
+    return f"the goal {where}, {turns} turn{'s' * (turns != 1)}: {end}"
 
 
 def save_shot(shot: Shot, path: str | os.PathLike[str]) -> None:
