@@ -69,9 +69,10 @@ def test_it_draws_at_every_end_of_its_controls(panel, left, right, head, press):
     if press:
         panel.controls["deeds"].press(press)
     assert panel.error is None and len(panel.drawn.panels) == 2
-    assert f"next {(left + right) / 2:+.0f} mm, {(right - left) / 180:+.2f} rad".replace(
-        "-", "−"
-    ) in repr(panel)
+    ahead, turn = (left + right) / 2, (right - left) / 180
+    step = f"; next {ahead:+.0f} mm, {turn:+.2f} rad".replace("-", "−")
+    assert repr(panel).endswith(step) == (press != "kick")
+    assert len(repr(panel)) <= 105  # more is cut off beside JupyterLab's list of files
     json.dumps(panel.view.scene)
     for drawn in panel.drawn.panels:
         for word in layers(drawn, Text):
@@ -191,7 +192,7 @@ def test_a_kick_says_how_far_and_whether_it_was_a_goal():
         inside = end[0] > 2700 + 42 and abs(end[1]) < 400
         assert GoalSupervisor(2000.0).judge(drive.world).is_success == inside
         rolled = np.hypot(end[0] - start[0], end[1] - start[1])
-        assert drive.told == f"kicked {rolled:,.0f} mm{' into the goal' if inside else ', no goal'}"
+        assert drive.told == f"kicked {rolled:,.0f} mm{', a goal' if inside else ', no goal'}"
         told.add(inside)
     drive.do([*drive.deeds, Deed("step", 0, 0, 0)])
     assert drive.told == "" and drive.ball_trail

@@ -164,7 +164,7 @@ class Drive:
         self.ball_trail = self.world.swing_paw()
         rolled = math.dist(self.ball_trail[0], self.ball_trail[-1])
         scored = self.supervisor.judge(self.world).is_success
-        self.told = f"kicked {rolled:,.0f} mm{' into the goal' if scored else ', no goal'}"
+        self.told = f"kicked {rolled:,.0f} mm{', a goal' if scored else ', no goal'}"
         if rolled == 0.0:
             self.told = "the paw met no ball"
 
@@ -194,8 +194,9 @@ class Drive:
         ball = None if moving else self.camera.sighting(world)
         goal = None if moving else self.camera.goal(world)
         ahead, turn = (left + right) / 2, (right - left) / pitch.ROBOT_WIDTH
-        words = [self._sights(moving, ball, goal), f"next {ahead:+.0f} mm, {turn:+.2f} rad"]
-        fact = "; ".join([self.told, *words] if self.told else words)
+        sights, step = self._sights(moving, ball, goal), f"next {ahead:+.0f} mm, {turn:+.2f} rad"
+        # After a kick there is no room for the next step; the dashed line shows it all the same.
+        fact = f"{self.told}; {sights}" if self.told else f"{sights}; {step}"
         return Scene(_proper(fact), [self._eye(moving, ball, goal), self._above(left, right, ball)])
 
     def _sights(self, moving: bool, ball: Sighting | None, goal: GoalSighting | None) -> str:
