@@ -43,6 +43,11 @@ def first(earned):
     return "any" if len(best) == 3 else " or ".join(best)
 
 
+def coins(x):
+    """Three digits, and four of a thousand."""
+    return f"{x:.4g}" if x > 999 else f"{x:.3g}"
+
+
 ENDS = list(itertools.product((1, 5, 6, 16, 17, 30), (0.0, 0.58, 0.59, 0.9, 0.91, 0.99)))
 
 
@@ -50,7 +55,7 @@ ENDS = list(itertools.product((1, 5, 6, 16, 17, 30), (0.0, 0.58, 0.59, 0.9, 0.91
 def test_the_explorer_says_what_each_chain_earns_and_which_is_chosen(models, h, gamma):
     set_all(models, h=h, gamma=gamma)
     earned = sums(h, gamma)
-    told = [f"{first(e)} ({', '.join(f'{x:.3g}' for x in e)})" for e in earned]
+    told = [f"{first(e)} ({', '.join(map(coins, e))})" for e in earned]
     assert repr(models) == f"h = {h}: {told[0]}; gamma = {gamma:g}: {told[1]}; average: {told[2]}"
     scales = (h, 1 / (1 - gamma), 1)
     for panel, model, scale in zip(models.drawn.panels, earned, scales, strict=True):
@@ -62,7 +67,7 @@ def test_the_explorer_says_what_each_chain_earns_and_which_is_chosen(models, h, 
         assert not large or not small or min(large) > max(small), "the chosen one is marked"
     for panel, model in zip(models.drawn.panels[:2], earned, strict=False):
         words = [layer.text for layer in panel.layers if isinstance(layer, Text)]
-        assert words[1:] == [f"{n}: {x:.3g}" for n, x in zip(NAMES, model, strict=True)]
+        assert words[1:] == [f"{n}: {coins(x)}" for n, x in zip(NAMES, model, strict=True)]
 
 
 def test_the_curves_are_the_closed_forms_and_meet_where_the_choice_flips(models):
@@ -96,6 +101,14 @@ def test_it_starts_at_the_thesiss_numbers_and_a_step_more_flips_the_choice(model
     assert "h = 5: upper (6, 0, 0); gamma = 0.9: middle (16.2, 59, 58.5)" in repr(explorer)
     set_all(explorer, h=6, gamma=0.91)
     assert re.match(r"h = 6: middle \(8, 10, 0\); gamma = 0.91: lower", repr(explorer))
+
+
+def test_a_sum_of_more_than_a_thousand_is_said_in_full():
+    explorer = horizon_explorer()
+    set_all(explorer, gamma=0.99)
+    assert "gamma = 0.99: lower (196, 951, 1036);" in repr(explorer)
+    words = [x.text for x in explorer.drawn.panels[1].layers if isinstance(x, Text)]
+    assert "lower: 1036" in words
 
 
 def test_a_slider_that_adds_up_steps_says_no_other_gamma():

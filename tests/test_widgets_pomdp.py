@@ -153,6 +153,21 @@ def test_the_bowl_states_its_planes_and_its_heights(bowl, horizon):
     assert named == [*THREE.states, *THREE.actions]
 
 
+@pytest.mark.parametrize("horizon", [1, 5])
+def test_a_plane_seen_edge_on_is_a_line(horizon):
+    """From -150 degrees the plane of "right" shows its edge; its border alone would hide it."""
+
+    def beyond(view):
+        """Which outlines reach the post of the corner "right"."""
+        turned, _ = pomdp.draw_bowl(horizon, view).panels
+        lines = [x for x in turned.layers if isinstance(x, Line)]
+        post = min((x for x in lines if x.dashed), key=lambda line: line.x[0])
+        return [x for x in lines if not x.dashed and min(x.x) < post.x[0] + 1e-6]
+
+    assert len(beyond((-150, 0))) == 1
+    assert beyond((-150, 38)) == []
+
+
 def test_the_bowl_is_turned_by_drags_and_keys(bowl):
     bowl.controls["view"].value = (0, 30)
     before = bowl.drawn.panels

@@ -578,10 +578,12 @@ def figure_2_12(ax: Axes | None = None) -> ProjectionPlot:
         intervals[f"p{i + 1}"] = bar
         mid = (left + right) / 2
         side = "left" if mid < 0.1 else "right" if mid > 0.9 else "center"
-        at = {"left": left, "right": right, "center": mid}[side]
+        at = {"left": left + 0.01, "right": right - 0.01, "center": mid}[side]
+        aside = {"left": (9, 3), "right": (-22, 3), "center": (0, 7)}[side]  # of a steep piece
         name = f"$a(p_{i + 1})$ = {actions[i]}"
-        ax.text(at, low + 1.9, name, ha=side, va="bottom", fontsize=9, color=style.INK)
-        _tag(ax, (mid, np.interp(mid, p, value)), f"$p_{i + 1}$", (0, 7))
+        white = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}  # over the dotted lines
+        ax.text(at, low + 1.9, name, ha=side, va="bottom", fontsize=9, bbox=white)
+        _tag(ax, (mid, np.interp(mid, p, value)), f"$p_{i + 1}$", aside)
     for end, height in zip(ends[1:-1], value[1:-1], strict=True):
         ax.plot([end, end], [low, height], ":", color=style.QUIET, linewidth=1, zorder=0.5)
     ax.set(ylim=(low, high))

@@ -107,7 +107,7 @@ def draw_models(h: int, gamma: float) -> Scene:
     for row in earned:
         best = best_chains(row)
         chosen = "any" if len(best) == len(CHAINS) else " or ".join(best)
-        told.append(f"{chosen} ({', '.join(f'{x:.3g}' for x in row)})")
+        told.append(f"{chosen} ({', '.join(map(_coins, row))})")
     fact = f"h = {h}: {told[0]}; gamma = {gamma:g}: {told[1]}; average: {told[2]}"
     summed = "one reward" if h == 1 else f"sum of {h} rewards"
     panels = [
@@ -122,6 +122,10 @@ def draw_models(h: int, gamma: float) -> Scene:
         _averages(earned[2]),
     ]  # fmt: skip
     return Scene(fact, panels)
+
+
+def _coins(x: float) -> str:
+    return f"{x:.3g}" if x < 999.5 else f"{x:.0f}"
 
 
 @cache
@@ -159,7 +163,7 @@ def _model(
             Line(x, curves[:, i], color, 2.0),
             Points([now], curves[at, i : i + 1], 6.5 if best[at, i] else 3.5, color),
             Points([left + pad], [y], 4.0, color),
-            Text(left + 2.5 * pad, y, f"{name}: {earned[i]:.3g}"),
+            Text(left + 2.5 * pad, y, f"{name}: {_coins(earned[i])}"),
         ]
     return Panel(*labels, ends, heights, layers, width=1.25, yticks=[0, 2, 4, 6, 8, 10, 12])
 

@@ -30,6 +30,7 @@ Floats = NDArray[np.float64]
 #: Horizons that the explorers can show.
 HORIZONS = range(1, 6)
 _FADED = 128  # lines that can be told from each other at all
+_THIN = 0.01  # a face of a smaller area is all border
 _FAINT = "#dcdcdc"
 
 
@@ -268,6 +269,7 @@ def draw_bowl(horizon: int, view: tuple[float, float]) -> Scene:
     layers: list[Layer] = [
         _cells(seen.shadows, [to_hex(paler(color, 0.55)) for color in colors], window),
         *(Line(post[:, 0], post[:, 1], style.QUIET, 1.0, dashed=True) for post in seen.corners),
+        *_edges(seen.faces, shaded(colors, seen)),
         _cells(seen.faces, shaded(colors, seen), window),
     ]
     for (_, (x, y)), name in zip(seen.corners, pomdp.states, strict=True):
@@ -282,6 +284,16 @@ def draw_bowl(horizon: int, view: tuple[float, float]) -> Scene:
         x, y = -0.95 + 1.1 * (i % 2), -0.9 - 0.17 * (i // 2)
         flat += [Points([x], [y], 6.0, COLORS[name]), Text(x + 0.1, y, name)]
     return Scene(fact, [turned, Panel("", "", window[:2], window[2:], flat, bare=True)])
+
+
+def _edges(polygons: list[Floats], colors: list[str]) -> list[Layer]:
+    """Return the outlines of those polygons that are seen edge-on, and else would not be seen."""
+    edges: list[Layer] = []
+    for polygon, color in zip(polygons, colors, strict=True):
+        x, y = np.vstack([polygon, polygon[:1]]).T
+        if abs(x[:-1] @ y[1:] - x[1:] @ y[:-1]) / 2 < _THIN:
+            edges.append(Line(x, y, color, 3.0))
+    return edges
 
 
 def _cells(
