@@ -165,6 +165,17 @@ def test_the_film_of_a_shot_says_what_happened(agent, tmp_path):
         assert 10 < film.n_frames <= len(shot.frames)
 
 
+def test_the_film_of_a_shot_shows_the_half_that_robot_and_goal_are_in(agent):
+    shot = goal.shoot(agent, 0.3, seed=2, goal_distance="far")
+    film = animation.animate_shot(shot)
+    film._init_draw()  # a film that nobody has drawn warns
+    (ax,) = film._fig.axes
+    (low, high), (right, left) = ax.get_xlim(), ax.get_ylim()
+    robot = 2700 - goal.STARTS["far"].distance
+    assert 0 <= low < robot < 2700 < high == 3000
+    assert right < -1900 and left > 1900  # no shot leaves it to a side
+
+
 def test_a_punished_episode_is_not_cut_off(agent):
     plot = policy.plot_learning(agent, Figure().subplots())
     low, high = plot.ax.get_ylim()

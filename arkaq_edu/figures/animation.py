@@ -140,7 +140,7 @@ def save_walk(walk: Walk, path: str | os.PathLike[str]) -> None:
 
 
 def animate_shot(shot: Shot) -> FuncAnimation:
-    """Show how the robot aims and kicks, from above.
+    """Show how the robot aims and kicks, from above, on the goal's half of the field.
 
     Parameters
     ----------
@@ -160,12 +160,13 @@ def animate_shot(shot: Shot) -> FuncAnimation:
     >>> page.count("data:image/png") == len(shot.frames)
     True
     """
-    figure = Figure(figsize=(5.0, 4.0), dpi=_DPI)
-    ax = style.axes(figure.add_axes((0.01, 0.09, 0.98, 0.83)))
+    figure = Figure(figsize=(4.4, 6.4), dpi=_DPI)
+    ax = style.axes(figure.add_axes((0.01, 0.05, 0.98, 0.9)))
     ax.axis("off")
-    figure.text(0.01, 0.98, how_the_shot_went(shot), va="top", color=style.INK)
-    caption = figure.text(0.01, 0.02, "", va="bottom", color=style.INK)
+    figure.text(0.01, 0.99, how_the_shot_went(shot), va="top", color=style.INK)
+    caption = figure.text(0.01, 0.01, "", va="bottom", color=style.INK)
     above = ax.imshow(shot.frames[0], extent=EXTENT)
+    ax.set_xlim(0, EXTENT[1])  # the goal's half of the field: nobody plays in the other
 
     def show(frame: int) -> None:
         above.set_data(shot.frames[frame])
