@@ -99,7 +99,7 @@ def write_report(
         text[name] = [_number(value) for value in results[name]]
     page = _PAGE.substitute(
         summary=f"Every quantity was measured with {seeds} seed{'s' if seeds > 1 else ''}; "
-        "the figures show what came of the first.",
+        "the figures show what came of the first, and 5.40 and 5.41 the course's own study.",
         table=text.to_html(index=False, border=0),
         figures="\n".join(_figure(number, draw, options) for number, draw in figures.items()),
         version=__version__,
