@@ -181,3 +181,10 @@ def test_bad_vectors_are_refused():
         prune(np.empty((0, 2)))
     with pytest.raises(ValueError, match="tol must be"):
         prune([[1, 2]], tol=-1)
+
+
+def test_who_is_ahead_is_asked_of_a_belief():
+    (found,) = dominated([[1.0, 0.0], [0.0, 1.0], [0.4, 0.4]])
+    assert found.at([0.9, 0.1]) == 0 and found.at([0.1, 0.9]) == 1
+    with pytest.raises(ValueError, match="b must sum to 1"):
+        found.at([3.0, 0.0])

@@ -271,3 +271,15 @@ def test_bad_input_is_refused():
         PolicyGraph([0, 0], [[0, 2], [0, 0]])
     with pytest.raises(ValueError, match=r"branches must have shape \(1, 2\), got \(1, 1\)"):
         PolicyGraph([0], [[0]]).values(pomdp)
+    with pytest.raises(ValueError, match="pomdp must be a POMDP, got 'tiger'"):
+        solve_pomdp("tiger")
+    with pytest.raises(ValueError, match="V must be over 2 states, got one over 4"):
+        bellman_error(pomdp, solve_pomdp(problem("floors"), 1))
+    with pytest.raises(ValueError, match=r"actions must have shape \(1,\), got \(2,\)"):
+        ValueFunction(np.eye(2)[:1], np.array([0, 1]), np.empty((1, 0), int))
+
+
+def test_a_plan_of_more_steps_than_python_calls_deep_can_be_written_out():
+    steps = sys.getrecursionlimit() + 10
+    V = solve_pomdp(problem("floors"), steps)
+    assert V.tree(V.best([1, 0, 0, 0])).depth == steps

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._checks import array, number
+from arkaq_edu._checks import array, distribution, number
 from arkaq_edu._compiled import word_before_compiling
 from arkaq_edu.pomdp import _simplex
 
@@ -229,8 +229,14 @@ class Domination:
         Returns
         -------
         int
+
+        Raises
+        ------
+        ValueError
+            If `b` is no distribution over the states.
         """
-        return self.by[int((self.lead @ array("b", b, (self.lead.shape[1],))).argmax())]
+        b = distribution("b", array("b", b, (self.lead.shape[1],)))
+        return self.by[int((self.lead @ b).argmax())]
 
 
 def dominated(alphas: ArrayLike, tol: float = 1e-9) -> list[Domination]:

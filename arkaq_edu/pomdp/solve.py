@@ -52,7 +52,7 @@ def solve_pomdp(pomdp: POMDP, horizon: int | None = None, tol: float = 1e-6) -> 
     Raises
     ------
     ValueError
-        If `horizon` is not an integer >= 1 or `tol` is not above 0.
+        If `pomdp` is none, `horizon` is not an integer >= 1 or `tol` is not above 0.
 
     Notes
     -----
@@ -94,6 +94,8 @@ def solve_pomdp(pomdp: POMDP, horizon: int | None = None, tol: float = 1e-6) -> 
       0: 1
       1: 2
     """
+    if not isinstance(pomdp, POMDP):
+        raise ValueError(f"pomdp must be a POMDP, got {pomdp!r}")
     tol = number("tol", tol, 0, open_low=True)
     if horizon is None:
         return _endless(pomdp, tol)
@@ -178,6 +180,11 @@ def bellman_error(pomdp: POMDP, V: ValueFunction) -> float:
     float
         V is within this over 1 - gamma of V*.
 
+    Raises
+    ------
+    ValueError
+        If `V` is over another number of states.
+
     Notes
     -----
     H V and V are both upper surfaces of finitely many vectors, a_i and c_j. The largest of
@@ -192,6 +199,9 @@ def bellman_error(pomdp: POMDP, V: ValueFunction) -> float:
     >>> round(bellman_error(pomdp, V), 9)
     1.5
     """
+    n_states = V.alphas.shape[1]
+    if n_states != pomdp.n_states:
+        raise ValueError(f"V must be over {pomdp.n_states} states, got one over {n_states}")
     step = backup(pomdp, V.alphas, 0.0)
     return distance(step.alphas, V.alphas)[0] + step.lost
 

@@ -62,7 +62,10 @@ class PolicyTree:
     @property
     def depth(self) -> int:
         """The number of steps that the plan is for."""
-        return 1 + (self.branches[0].depth if self.branches else 0)
+        tree, depth = self, 1
+        while tree.branches:
+            tree, depth = tree.branches[0], depth + 1
+        return depth
 
     def text(self, pomdp: POMDP | None = None) -> str:
         """Return the tree as text: an action, and below it a line for each observation.

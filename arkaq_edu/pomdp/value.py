@@ -34,6 +34,11 @@ class ValueFunction:
     horizon : int or None
         The number of steps still to go; None where the future has no end.
 
+    Raises
+    ------
+    ValueError
+        If there is no plan, or `alphas`, `actions` and `branches` are not of as many.
+
     Notes
     -----
     V is piecewise linear and convex in the belief. The thesis (2.3.4) says so of the optimal
@@ -63,6 +68,16 @@ class ValueFunction:
     shorter: ValueFunction | None = None
     error: float = 0.0
     horizon: int | None = None
+
+    def __post_init__(self) -> None:
+        n = len(array("alphas", self.alphas, (None, None)))
+        if not np.size(self.alphas):
+            raise ValueError(f"alphas must hold at least one vector, got {np.shape(self.alphas)}")
+        for name, wanted in (("actions", 1), ("branches", 2)):
+            shape = np.shape(getattr(self, name))
+            if len(shape) != wanted or shape[0] != n:
+                asked = f"({n},)" if wanted == 1 else f"({n}, any)"
+                raise ValueError(f"{name} must have shape {asked}, got {shape}")
 
     def __len__(self) -> int:
         return len(self.alphas)
@@ -158,20 +173,17 @@ class ValueFunction:
         k = integer("k", k, 0, len(self) - 1)
         if self.horizon is None:
             raise ValueError("k must be a plan with an end, but these go on for ever")
-        # Plans share what follows, and so may the trees: written out they would be many.
-        memory: dict[tuple[int, int], PolicyTree] = {}
-
-        def grow(V: ValueFunction, depth: int, k: int) -> PolicyTree:
-            if (depth, k) not in memory:
-                rest = (
-                    ()
-                    if V.shorter is None
-                    else tuple(grow(V.shorter, depth + 1, int(j)) for j in V.branches[k])
-                )
-                memory[depth, k] = PolicyTree(int(V.actions[k]), rest)
-            return memory[depth, k]
-
-        return grow(self, 0, k)
+        stages = [self]
+        while stages[-1].shorter is not None:
+            stages.append(stages[-1].shorter)
+        # From the last step to the first. Plans share what follows, and so may the trees.
+        trees = [PolicyTree(int(a)) for a in stages.pop().actions]
+        for V in reversed(stages):
+            trees = [
+                PolicyTree(int(a), tuple(trees[j] for j in row))
+                for a, row in zip(V.actions, V.branches, strict=True)
+            ]
+        return trees[k]
 
     def _beliefs(self, b: ArrayLike) -> NDArray[np.float64]:
         n_states = self.alphas.shape[1]
