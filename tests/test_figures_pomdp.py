@@ -8,7 +8,14 @@ from matplotlib.figure import Figure
 from scipy.spatial import HalfspaceIntersection
 
 from arkaq_edu.figures import FIGURES, pomdp
-from arkaq_edu.pomdp import PolicyTree, all_trees, problem, solve_pomdp, tree_value
+from arkaq_edu.pomdp import (
+    PolicyTree,
+    ValueFunction,
+    all_trees,
+    problem,
+    solve_pomdp,
+    tree_value,
+)
 
 TWO = problem("two_state")
 BELIEFS = np.linspace(0, 1, 201)
@@ -227,3 +234,11 @@ def test_two_states_make_a_line_and_three_a_bowl():
         pomdp.bowl(pomdp.solved("two_state", 1), 0, 30)
     with pytest.raises(ValueError, match="alphas must"):
         pomdp.plot_surface(pomdp.solved("three_places", 1), problem("three_places"))
+
+
+def test_a_policy_graph_may_lead_through_a_node_that_is_nowhere_best(ax):
+    tiger = problem("tiger")
+    alphas = np.array([[3.0, 0.0], [0.0, 3.0], [1.0, 1.0]])
+    V = ValueFunction(alphas, np.array([1, 2, 0]), np.array([[2, 2], [2, 2], [0, 1]]))
+    plot = pomdp.plot_policy_graph(V, tiger, ax)
+    assert repr(plot) == "3 of 3 nodes can be reached from the start"

@@ -811,11 +811,12 @@ def plot_policy_graph(V: ValueFunction, pomdp: POMDP, ax: Axes | None = None) ->
     """
     if V.graph is None:
         raise ValueError(f"V must be a value function without a horizon, got {V!r}")
-    plans, _ = upper_surface(V.alphas)
+    alphas = _checks.array("alphas", V.alphas, (None, 2))
     reached = [V.best(pomdp.start)]
     for k in reached:  # it grows as it is walked
         reached += [j for j in dict.fromkeys(V.branches[k].tolist()) if j not in reached]
-    row = [k for k in plans.tolist() if k in reached]
+    # In the order in which the upper surface has them, from the left; a node need not be on it.
+    row = sorted(reached, key=lambda k: alphas[k, 0] - alphas[k, 1])
     title = f"{len(row)} of {len(V)} nodes can be reached from the start"
     if ax is None:
         _, ax = plt.subplots(figsize=(8.4, 3.2), layout="constrained")
