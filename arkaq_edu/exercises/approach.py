@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mdp import QLearner
-from ._ask import ExerciseError, ask, numbers
+from ._ask import ExerciseError, Rule, ask, numbers
 
 Rng = np.random.Generator | int | None
-Rule = Callable[..., float]
 
 
 def check_reward(reward: Callable[..., Any], rng: Rng = None) -> str:
@@ -60,7 +59,7 @@ def check_reward(reward: Callable[..., Any], rng: Rng = None) -> str:
 
 
 # What is often done instead, and what to say of it.
-WRONG_REWARD: list[tuple[Rule, str]] = [
+WRONG_REWARD: list[Rule] = [
     (
         lambda d, o: 100.0 * (d < 500),
         "you never give the extra 50 for a ball straight ahead",
@@ -277,7 +276,7 @@ def _backup(q, rewards, next_values, ended, alpha, gamma) -> float:
     return float(learner.Q[0, 0])
 
 
-WRONG_BACKUP: list[tuple[Rule, str]] = [
+WRONG_BACKUP: list[Rule] = [
     (
         lambda q, r, v, end, alpha, gamma: r[0] + gamma * v.max(),
         "you put the target in place of the old value: only a step of size alpha leads to it",
@@ -316,7 +315,7 @@ WRONG_BACKUP: list[tuple[Rule, str]] = [
     ),
 ]
 
-WRONG_END: list[tuple[Rule, str]] = [
+WRONG_END: list[Rule] = [
     (
         lambda q, r, v, end, alpha, gamma: q + alpha * (r[0] + gamma * v.max() - q),
         "where the episode has ended nothing can follow: no next value belongs into the target "
@@ -332,7 +331,7 @@ WRONG_END: list[tuple[Rule, str]] = [
     ),
 ]
 
-WRONG_HOLD: list[tuple[Rule, str]] = [
+WRONG_HOLD: list[Rule] = [
     (
         lambda q, r, v, end, alpha, gamma: (
             q + alpha * (r.sum() + gamma ** len(r) * v.max() * (not end) - q)
@@ -392,13 +391,13 @@ WRONG_HOLD: list[tuple[Rule, str]] = [
 def _compare(
     cases: list[Any],
     answers: list[float],
-    right: Rule,
-    wrong: list[tuple[Rule, str]],
+    right: Callable[..., float],
+    wrong: list[Rule],
     about: Callable[..., str],
 ) -> None:
     """Say in what way the answers are wrong, if they are: by a rule that explains all of them."""
 
-    def agree(rule: Rule) -> bool:
+    def agree(rule: Callable[..., float]) -> bool:
         return np.allclose(answers, [rule(*case) for case in cases], rtol=0, atol=1e-9)
 
     if agree(right):

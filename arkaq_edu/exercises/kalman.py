@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._ask import ExerciseError, ask, numbers
+from ._ask import ExerciseError, Rule, ask, numbers
 
 Rng = np.random.Generator | int | None
-Rule = tuple[Callable[..., float], str]
 
 FUSED = "Right: the surer ruler counts for more, and two are surer than either alone."
 TURNED = "Right: predict, correct. This is the whole filter, for one number."
