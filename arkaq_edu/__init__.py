@@ -1,6 +1,6 @@
 """ARKAQ learning, taught: a Kalman filter, an ART network and Q-learning on a legged robot.
 
-Units everywhere: millimetres, radians, seconds, grams. Orientation is positive to the left.
+Units everywhere: millimeters, radians, seconds, grams. Orientation is positive to the left.
 
 The rooms of the house, from the ground up (a room imports only from those before it):
 

@@ -160,7 +160,7 @@ def watch(
     """
     from arkaq_edu import experiments
     from arkaq_edu.arkaq import Arkaq
-    from arkaq_edu.figures.animation import save_shot, save_walk
+    from arkaq_edu.figures.drawing.animation import save_shot, save_walk
 
     goal: Any = experiments.goal
     if agent == "approach-ball":

@@ -84,7 +84,7 @@ def artlib(path: str, *parameters: float) -> Callable[[np.ndarray], Run] | None:
 
 
 def brute_force(X: np.ndarray, vigilance: float, eta: float = 0.5) -> np.ndarray:
-    """Return the centres, found by comparing every pattern with every centre, in numpy."""
+    """Return the centers, found by comparing every pattern with every center, in numpy."""
     centers, n = np.empty_like(X), 0
     for x in X:
         d2 = ((centers[:n] - x) ** 2).sum(axis=1)
@@ -98,13 +98,13 @@ def brute_force(X: np.ndarray, vigilance: float, eta: float = 0.5) -> np.ndarray
 
 
 def euclidean() -> None:
-    """Segmentation: the same at every vigilance, so flat in the number of centres."""
+    """Segmentation: the same at every vigilance, so flat in the number of centers."""
     X = np.random.default_rng(0).uniform(-1, 1, (20_000, 2))
     unit_square = (X + 1) / 2
     for vigilance in (0.15, 0.05, 0.025):
         n = EuclideanART(vigilance).fit(X).n_clusters_
         peers = {
-            "numpy, every centre": (len(X), partial(brute_force, X, vigilance)),
+            "numpy, every center": (len(X), partial(brute_force, X, vigilance)),
             "scikit-learn Birch": (
                 len(X),
                 quiet(partial(Birch(threshold=vigilance, n_clusters=None).fit, X)),
@@ -117,10 +117,10 @@ def euclidean() -> None:
             peers["artlib HypersphereART, first 300"] = (300, ball(unit_square[:300]))
         if box := artlib("optimized.backends.cpp.FuzzyART.FuzzyART", 1 - vigilance / 2, 1e-7, 1.0):
             peers["artlib FuzzyART, compiled, first 5000"] = (5000, box(unit_square[:5000]))
-        title = f"EuclideanART.fit, vigilance {vigilance}, {n} centres"
+        title = f"EuclideanART.fit, vigilance {vigilance}, {n} centers"
         compare(title, len(X), partial(EuclideanART(vigilance).fit, X), **peers)
     wide, fine = (partial(EuclideanART(v).fit, X) for v in (0.15, 0.025))
-    compare("EuclideanART.fit, 174 centres", len(X), wide, **{"3390 centres": (len(X), fine)})
+    compare("EuclideanART.fit, 174 centers", len(X), wide, **{"3390 centers": (len(X), fine)})
     art = EuclideanART(0.025).fit(X)
     tree = cKDTree(art.cluster_centers_)
     fresh = np.random.default_rng(1).uniform(-1, 1, X.shape)

@@ -16,7 +16,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from arkaq_edu.mdp import MDP, QLearner, policy_iteration, practise, value_iteration
+from arkaq_edu.mdp import MDP, QLearner, policy_iteration, train, value_iteration
 
 N_STATES, N_ACTIONS, GAMMA = 337, 3, 0.9
 ROUNDS = 7
@@ -103,7 +103,7 @@ def q_updates() -> None:
     compare("update, called from Python", n, updates, **replay, **learn)
     compare("boltzmann + update, from Python", n, decisions, **learn)
     compare("replay, one call", n, lambda: learner.replay(s, a, r, s_next, False), **replay)
-    compare("practise (model, choice, update)", n, lambda: practise(model, learner, n), **learn)
+    compare("practice (model, choice, update)", n, lambda: train(model, learner, n), **learn)
 
 
 def planning() -> None:

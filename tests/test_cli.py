@@ -5,7 +5,7 @@ import pytest
 from click.testing import CliRunner
 
 from arkaq_edu import cli, experiments
-from arkaq_edu.arkaq import Arkaq, Learning
+from arkaq_edu.arkaq import Arkaq, TrainingSettings
 
 
 @pytest.fixture
@@ -20,11 +20,11 @@ def brief(monkeypatch):
     from arkaq_edu.experiments import approach, goal
 
     def short(seed, vigilance=0.1, **options):
-        options["learning"] = Learning(patterns=300, exploration=500, exploitation=0)
+        options["learning"] = TrainingSettings(patterns=300, exploration=500, exploitation=0)
         return long(seed, vigilance, **options)
 
     def short_goal(seed, vigilance=None, goal_distance="near", **options):
-        options["learning"] = Learning.goal(patterns=100, exploration=150, exploitation=0)
+        options["learning"] = TrainingSettings.goal(patterns=100, exploration=150, exploitation=0)
         return long_goal(seed, vigilance, goal_distance, **options)
 
     long, long_goal = approach.train, goal.train

@@ -11,8 +11,8 @@ from arkaq_edu.arkaq.automata import (
     SEGMENTATION,
     Automaton,
 )
-from arkaq_edu.arkaq.learning import Learning
 from arkaq_edu.arkaq.sensing import Estimator, Sensing
+from arkaq_edu.arkaq.settings import TrainingSettings
 
 __all__ = [
     "GOAL_Q_LEARNING",
@@ -22,6 +22,6 @@ __all__ = [
     "Arkaq",
     "Automaton",
     "Estimator",
-    "Learning",
     "Sensing",
+    "TrainingSettings",
 ]

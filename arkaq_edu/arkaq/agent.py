@@ -21,8 +21,8 @@ from arkaq_edu.arkaq.automata import (
     SEGMENTATION,
     Automaton,
 )
-from arkaq_edu.arkaq.learning import Learning
 from arkaq_edu.arkaq.sensing import Estimator, Sensing
+from arkaq_edu.arkaq.settings import TrainingSettings
 from arkaq_edu.art import EuclideanART
 from arkaq_edu.mdp import QLearner
 
@@ -45,15 +45,15 @@ class Arkaq:
     ----------
     vigilance : float
         The ART network's vigilance, a distance between scaled patterns, in (0, 2].
-    task : {"ball", "goal"}
+    task : {"approach", "goal"}
         The problem: it decides which automata the agent runs, and what the next two arguments
         are by default.
     sensing : {"consistent", "thesis", "goal"} or Sensing, optional
         The Kalman filter's settings and the intervals of the measurements: by default
         "consistent" for the ball, "goal" for the goal.
-    learning : Learning, optional
+    learning : TrainingSettings, optional
         All that the thesis leaves open: schedules, discount, numbers of patterns and cycles; by
-        default ``Learning()`` for the ball, ``Learning.goal()`` for the goal.
+        default ``TrainingSettings()`` for the ball, ``TrainingSettings.goal()`` for the goal.
     rng : int or numpy.random.Generator, optional
         The seed of everything the agent draws and of every episode it starts.
 
@@ -79,9 +79,9 @@ class Arkaq:
     Examples
     --------
     >>> import gymnasium
-    >>> from arkaq_edu.arkaq import Learning
+    >>> from arkaq_edu.arkaq import TrainingSettings
     >>> env = gymnasium.make("arkaq_edu:BallApproach-v0", far=1000.0)
-    >>> short = Learning(patterns=300, exploration=2000, exploitation=0)
+    >>> short = TrainingSettings(patterns=300, exploration=2000, exploitation=0)
     >>> agent = Arkaq(vigilance=0.2, learning=short, rng=0).learn(env, progress=False)
     >>> observation, info = env.reset(seed=1)
     >>> agent.reset()
@@ -91,7 +91,7 @@ class Arkaq:
     The same class learns to score.
 
     >>> env = gymnasium.make("arkaq_edu:ScoreGoal-v0")
-    >>> short = Learning.goal(patterns=200, exploration=200, exploitation=0)
+    >>> short = TrainingSettings.goal(patterns=200, exploration=200, exploitation=0)
     >>> agent = Arkaq(0.06, task="goal", learning=short, rng=0).learn(env, progress=False)
     >>> agent.q.Q.shape[1]
     3
@@ -101,14 +101,14 @@ class Arkaq:
         self,
         vigilance: float = 0.1,
         *,
-        task: Literal["ball", "goal"] = "ball",
+        task: Literal["approach", "goal"] = "approach",
         sensing: Sensing | Literal["consistent", "thesis", "goal"] | None = None,
-        learning: Learning | None = None,
+        learning: TrainingSettings | None = None,
         rng: int | np.random.Generator | None = None,
     ) -> None:
         self.vigilance = _checks.number("vigilance", vigilance, 0, 2, open_low=True)
         if task not in _TASKS:
-            raise ValueError(f"task must be 'ball' or 'goal', got {task!r}")
+            raise ValueError(f"task must be 'approach' or 'goal', got {task!r}")
         self.task = task
         usual = _TASKS[task]
         presets = {
@@ -272,7 +272,7 @@ class Arkaq:
             "done_in_phase": self._done_in_phase,
             "cycles": self.cycles,
         }
-        if self.task != "ball":  # files older than the second task do not name the first
+        if self.task != "approach":  # files older than the second task do not name the first
             settings["task"] = self.task
         # NumPy's numbers are as good as Python's as settings, but not to JSON.
         text = json.dumps(settings, default=lambda number: number.item())
@@ -316,9 +316,9 @@ class Arkaq:
                 raise ValueError(f"format must be {FORMAT}, got {settings['format']!r}")
             agent = cls(
                 settings["vigilance"],
-                task=settings.get("task", "ball"),
+                task=settings.get("task", "approach"),
                 sensing=Sensing.from_json(settings["sensing"]),
-                learning=Learning(**settings["learning"]),
+                learning=TrainingSettings(**settings["learning"]),
                 rng=settings["seed"],
             )
             agent._take_up(settings, arrays)
@@ -593,10 +593,10 @@ class _Task(NamedTuple):
     segmentation: type[_Segmentation]
     q_learning: type[_QLearning]
     sensing: str
-    learning: Callable[[], Learning]
+    learning: Callable[[], TrainingSettings]
 
 
 _TASKS = {
-    "ball": _Task(_Segmentation, _QLearning, "consistent", Learning),
-    "goal": _Task(_GoalSegmentation, _GoalQLearning, "goal", Learning.goal),
+    "approach": _Task(_Segmentation, _QLearning, "consistent", TrainingSettings),
+    "goal": _Task(_GoalSegmentation, _GoalQLearning, "goal", TrainingSettings.goal),
 }

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from sklearn.base import BaseEstimator, ClusterMixin
 from sklearn.utils.validation import check_array, check_is_fitted, validate_data
 
-from .._checks import array
+from arkaq_edu._checks import array
 
 Floats = NDArray[np.float64]
 Labels = NDArray[np.int64]
@@ -134,7 +134,7 @@ class Categories(ClusterMixin, BaseEstimator):
 
     @property
     def cluster_centers_(self) -> Floats:
-        """The centres, shape (n_clusters, n_features), in the order of their founding (a copy)."""
+        """The centers, shape (n_clusters, n_features), in the order of their founding (a copy)."""
         return self._centers[: self._n].copy()
 
     @property

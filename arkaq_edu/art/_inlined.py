@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from .._compiled import HAVE_NUMBA
+from arkaq_edu._compiled import HAVE_NUMBA
 
 
 def inlined(function: Callable[..., Any]) -> Callable[..., Any]:

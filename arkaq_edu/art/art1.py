@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from sklearn.utils.validation import check_is_fitted
 
-from .._checks import number
-from .._compiled import kernel
-from ._estimator import Categories, Floats, Labels
+from arkaq_edu._checks import number
+from arkaq_edu._compiled import kernel
+from arkaq_edu.art._estimator import Categories, Floats, Labels
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from sklearn.utils.validation import check_is_fitted
 
-from .._checks import number
-from .._compiled import kernel
-from ._estimator import Categories, Floats, Labels
-from ._inlined import inlined
+from arkaq_edu._checks import number
+from arkaq_edu._compiled import kernel
+from arkaq_edu.art._estimator import Categories, Floats, Labels
+from arkaq_edu.art._inlined import inlined
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -336,7 +336,7 @@ class ART2(Categories):
 
     Notes
     -----
-    Of scikit-learn's estimator checks one cannot pass: ``check_clustering`` feeds standardised
+    Of scikit-learn's estimator checks one cannot pass: ``check_clustering`` feeds standardized
     patterns, hence negative ones, though the class is tagged as for positive patterns only.
 
     References

@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 
-from .._checks import number
-from .._compiled import kernel
-from ._estimator import Categories, Floats, Labels
+from arkaq_edu._checks import number
+from arkaq_edu._compiled import kernel
+from arkaq_edu.art._estimator import Categories, Floats, Labels
 
 
 @kernel
-def normalise(x, unit):
+def normalize(x, unit):
     """Write `x` scaled to norm 1 into `unit`; return false if it has no direction."""
     peak = 0.0
     for i in range(len(x)):
@@ -32,12 +32,12 @@ def normalise(x, unit):
 @kernel
 def enter(x, theta, pattern):
     """Write unit vector `x`, freed of components below `theta`, into `pattern`: the F0 stage."""
-    if not normalise(x, pattern):
+    if not normalize(x, pattern):
         return False
     for i in range(len(x)):
         if abs(pattern[i]) < theta:
             pattern[i] = 0.0
-    return normalise(pattern, pattern)
+    return normalize(pattern, pattern)
 
 
 @kernel
@@ -70,10 +70,10 @@ def learn(X, start, labels, templates, counts, n, vigilance, rate, theta):
             for i in range(len(pattern)):
                 # What a template has lost to noise it does not take up again.
                 update[i] = 0.0 if abs(templates[j, i]) < theta else pattern[i]
-            if normalise(update, update):
+            if normalize(update, update):
                 for i in range(len(pattern)):
                     update[i] = rate * update[i] + (1.0 - rate) * templates[j, i]
-                normalise(update, templates[j])
+                normalize(update, templates[j])
         else:
             if n == len(templates):
                 return t, n
@@ -100,15 +100,15 @@ class ART2A(Categories):
 
     A pattern is scaled to unit norm, so that its dot product with a template, which has unit norm
     too, is the cosine of the angle between them. If the cosine of the most aligned template is
-    strictly larger than `vigilance`, the template turns towards the pattern,
+    strictly larger than `vigilance`, the template turns toward the pattern,
     ``z = unit(beta * x + (1 - beta) * z)``; otherwise a new template is founded at the pattern.
     (Where the two cancel, which takes a negative vigilance, the template stays.)
     Here vigilance is a similarity: the larger, the more categories.
 
     The thesis scales each feature to [-1, 1] and takes the norm to be 1 by that; it runs from 0 to
-    1.41, and the largest raw dot product then is seldom the largest cosine. Right is: first centre
+    1.41, and the largest raw dot product then is seldom the largest cosine. Right is: first center
     the features (the scaling to [-1, 1] does so), then scale each pattern to unit norm. It follows
-    that an angle says nothing of the distance from the centre, and that with a single feature only
+    that an angle says nothing of the distance from the center, and that with a single feature only
     the patterns +1 and -1 remain. A pattern of zeros has no angle: it belongs to category -1.
 
     `predict` and `category` give the most aligned template, however far (section 5.2.1).

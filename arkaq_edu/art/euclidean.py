@@ -8,56 +8,56 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .._checks import array, integer, number
-from ._estimator import Categories, Floats, Labels
-from ._grid import half_cells_per_unit, learn, link_all, recall
+from arkaq_edu._checks import array, integer, number
+from arkaq_edu.art._estimator import Categories, Floats, Labels
+from arkaq_edu.art.index import half_cells_per_unit, learn, link_all, recall
 
 
 class EuclideanART(Categories):
-    """Categories by Euclidean distance: the nearest centre learns, or a new one is founded.
+    """Categories by Euclidean distance: the nearest center learns, or a new one is founded.
 
-    For each pattern `x`, in the order of presentation, the nearest centre `m` is found. If its
-    distance is strictly smaller than `vigilance`, it moves towards the pattern,
-    ``m += eta * (x - m)``; otherwise a new centre is founded at `x`. Of centres equally near the
+    For each pattern `x`, in the order of presentation, the nearest center `m` is found. If its
+    distance is strictly smaller than `vigilance`, it moves toward the pattern,
+    ``m += eta * (x - m)``; otherwise a new center is founded at `x`. Of centers equally near the
     one founded first is taken.
 
     The literature knows this as leader clustering with an online k-means update. It has neither
-    the F1 loops of ART2 nor its normalisation; what it shares with the family is that recognising
+    the F1 loops of ART2 nor its normalization; what it shares with the family is that recognizing
     and learning are one act, gated by a vigilance. Here vigilance is a distance: the smaller, the
-    more categories. `predict` and `category` give the nearest centre, however far.
+    more categories. `predict` and `category` give the nearest center, however far.
 
-    Two choices decide whether counts of centres can be compared between programs at all. The
-    comparison is strict: a pattern at a distance of exactly `vigilance` founds a centre. And the
-    update factor is fixed at `learning_rate`, as in the thesis, so that a centre follows its
-    latest patterns; the online k-means of the textbooks, whose centre is the mean of its
+    Two choices decide whether counts of centers can be compared between programs at all. The
+    comparison is strict: a pattern at a distance of exactly `vigilance` founds a center. And the
+    update factor is fixed at `learning_rate`, as in the thesis, so that a center follows its
+    latest patterns; the online k-means of the textbooks, whose center is the mean of its
     patterns, is ``learning_rate="count"``.
 
-    The work per pattern does not grow with the number of centres as long as these differ in their
-    first three features and lie within 10**8 vigilances of the origin; the centres are those of a
+    The work per pattern does not grow with the number of centers as long as these differ in their
+    first three features and lie within 10**8 vigilances of the origin; the centers are those of a
     search through all of them, to the last bit.
 
     Parameters
     ----------
     vigilance : float in [1e-150, 1e150], default=0.1
-        Distance below which a pattern belongs to a centre, in the units of the patterns.
+        Distance below which a pattern belongs to a center, in the units of the patterns.
     learning_rate : float in (0, 1] or "count", default=0.5
-        Update factor eta. The thesis never gives it; its counts of centres speak for about 0.5.
-        ``"count"``: one over the number of patterns the centre has learned, this one included.
+        Update factor eta. The thesis never gives it; its counts of centers speak for about 0.5.
+        ``"count"``: one over the number of patterns the center has learned, this one included.
     max_clusters : int >= 1 or None, default=None
-        Greatest number of centres. Once there are so many, a pattern that would found another
-        belongs to its nearest centre, however far; nothing is learned from it.
+        Greatest number of centers. Once there are so many, a pattern that would found another
+        belongs to its nearest center, however far; nothing is learned from it.
 
     Attributes
     ----------
     cluster_centers_ : ndarray of shape (n_clusters, n_features)
-        The centres, in the order in which they were founded (a copy).
+        The centers, in the order in which they were founded (a copy).
     counts_ : ndarray of shape (n_clusters,)
-        How many patterns each centre has learned, the one that founded it included (a copy).
+        How many patterns each center has learned, the one that founded it included (a copy).
     n_clusters_ : int
-        Number of centres.
+        Number of centers.
     labels_ : ndarray of shape (n_samples,)
         The category of each pattern of the last `fit` or `partial_fit`, as it was decided when
-        the pattern was presented. Centres move on, so `predict` on the same patterns may differ.
+        the pattern was presented. Centers move on, so `predict` on the same patterns may differ.
     n_features_in_ : int
         Number of features.
     feature_names_in_ : ndarray of shape (n_features_in_,)
@@ -72,7 +72,7 @@ class EuclideanART(Categories):
 
     Examples
     --------
-    The second pattern is near enough to the first centre, the third is not:
+    The second pattern is near enough to the first center, the third is not:
 
     >>> art = EuclideanART(vigilance=0.5, learning_rate=0.5)
     >>> art.fit([[0.0, 0.0], [0.25, 0.0], [1.0, 1.0]]).cluster_centers_
@@ -83,7 +83,7 @@ class EuclideanART(Categories):
     >>> art.predict([[0.4, 0.4], [9.0, 9.0]])
     array([0, 1])
 
-    A distance of exactly the vigilance founds a centre:
+    A distance of exactly the vigilance founds a center:
 
     >>> EuclideanART(vigilance=0.5).fit_predict([[0.0], [0.5]])
     array([0, 1])
@@ -113,7 +113,7 @@ class EuclideanART(Categories):
         learning_rate: float | str = 0.5,
         max_clusters: int | None = None,
     ) -> Self:
-        """Return a fitted estimator with given centres: the way back from a file.
+        """Return a fitted estimator with given centers: the way back from a file.
 
         `cluster_centers_`, `counts_` and the parameters are all there is to save: what is learned
         from then on is, to the last bit, what the saved estimator would have learned. `labels_` is
@@ -122,9 +122,9 @@ class EuclideanART(Categories):
         Parameters
         ----------
         centers : array-like of shape (n_clusters, n_features)
-            The centres, at least one, in the order in which they were founded.
+            The centers, at least one, in the order in which they were founded.
         counts : array-like of shape (n_clusters,)
-            How many patterns each centre has learned, at least one.
+            How many patterns each center has learned, at least one.
         vigilance, learning_rate, max_clusters
             As for the class.
 
@@ -170,7 +170,7 @@ class EuclideanART(Categories):
         return vigilance, number("learning_rate", self.learning_rate, 0, 1, open_low=True), limit
 
     def _arrange(self, capacity: int) -> None:
-        """Give the centres room for `capacity` of them, and build their table anew."""
+        """Give the centers room for `capacity` of them, and build their table anew."""
         super()._arrange(capacity)
         self._scale = half_cells_per_unit(self._settings[0])
         self._heads = np.empty(2 << capacity.bit_length(), np.int64)

@@ -33,7 +33,7 @@ STARTS = {"near": Start(1850.0, 0.0, 0.4), "far": Start(2300.0, 0.25, 0.4)}
 
 
 class ScoreGoalEnv(gymnasium.Env[np.ndarray, int]):
-    """Turn towards the goal and kick.
+    """Turn toward the goal and kick.
 
     ## Action space
 

@@ -23,8 +23,8 @@ class PixelObservation(gymnasium.ObservationWrapper, RecordConstructorArgs):
 
     ## Observation space
 
-    ``Box(0, 255, (160, 208, 3), uint8)``, the picture in colour; or, with ``classes=True``,
-    ``Box(0, 6, (160, 208), uint8)``, a colour class a pixel (an index into
+    ``Box(0, 255, (160, 208, 3), uint8)``, the picture in color; or, with ``classes=True``,
+    ``Box(0, 6, (160, 208), uint8)``, a color class a pixel (an index into
     `arkaq_edu.field.pitch.PALETTE`).
 
     Parameters
@@ -32,7 +32,7 @@ class PixelObservation(gymnasium.ObservationWrapper, RecordConstructorArgs):
     env : gymnasium.Env
         ``BallApproach-v0`` or ``ScoreGoal-v0``.
     classes : bool
-        Whether to give colour classes.
+        Whether to give color classes.
 
     References
     ----------
@@ -59,7 +59,7 @@ class PixelObservation(gymnasium.ObservationWrapper, RecordConstructorArgs):
     def observation(self, observation: Any) -> np.ndarray:
         """Return the picture, whatever was made of it."""
         task: Any = self.unwrapped
-        return (task.camera.colours if self.classes else task.camera.picture)(task.world)
+        return (task.camera.colors if self.classes else task.camera.picture)(task.world)
 
 
 class FullState(gymnasium.ObservationWrapper, RecordConstructorArgs):

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mdp import QLearner
-from ._ask import ExerciseError, Rule, ask, numbers
+from arkaq_edu.exercises._ask import ExerciseError, Rule, ask, numbers
+from arkaq_edu.mdp import QLearner
 
 Rng = np.random.Generator | int | None
 
@@ -262,7 +262,7 @@ next value belongs into the target there
             cases[part], answers[part], _backup, rules,
             lambda q, *_, tell=tell: f"{tell}: from Q = {q:.2f} the new value is",
         )  # fmt: skip
-    return "Right: one number moves a little way towards what was really found. That is learning."
+    return "Right: one number moves a little way toward what was really found. That is learning."
 
 
 def _discounted(rewards: NDArray[np.float64], gamma: float) -> float:
@@ -323,7 +323,7 @@ WRONG_END: list[Rule] = [
     ),
     (
         lambda q, r, v, end, alpha, gamma: r[0],
-        "the end is learned from like all else: a step of size alpha towards the target",
+        "the end is learned from like all else: a step of size alpha toward the target",
     ),
     (
         lambda q, r, v, end, alpha, gamma: q,

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..art import match_norm
-from ._ask import ExerciseError, Rule, ask, numbers
+from arkaq_edu.art import match_norm
+from arkaq_edu.exercises._ask import ExerciseError, Rule, ask, numbers
 
 Rng = np.random.Generator | int | None
 Bits = NDArray[np.int64]
@@ -52,7 +52,7 @@ the input, from 0 to 1
     answers = _each("match", match, cases)
     if np.allclose(answers, [(x & z).sum() / x.sum() for x, z in cases]):
         return "Right: it asks how much of what is there was expected, and of nothing else."
-    _recognise(answers, cases, WRONG_MATCH)
+    _recognize(answers, cases, WRONG_MATCH)
     x, z = cases[0]
     raise ExerciseError(
         f"of {x.sum()} active inputs {(x & z).sum()} are in the template, so the match is "
@@ -99,7 +99,7 @@ number: which one it is, not how large its signal
     wanted = [_chosen(_signals(x, Z), reset) for x, Z, reset in cases]
     if answers == wanted:
         return "Right: the strongest first, and never the same node twice for one pattern."
-    _recognise(np.array(answers), cases, WRONG_CHOICE)
+    _recognize(np.array(answers), cases, WRONG_CHOICE)
     for answer, (_, _, reset) in zip(answers, cases, strict=True):
         if answer in reset:
             raise ExerciseError(
@@ -154,7 +154,7 @@ of u and of c p, added, not the norm of their sum
         size = np.linalg.norm(z)
         wanted.append(float(match_norm(u @ z / size, c * d * size, c)))
     if not np.allclose(answers, wanted):
-        _recognise(answers, cases, WRONG_NORM_R)
+        _recognize(answers, cases, WRONG_NORM_R)
         raise ExerciseError(
             f"with c = {cases[0][2]:.2f} and d = {cases[0][3]:.2f} you have {answers[0]:.4f} where "
             f"{wanted[0]:.4f} should be"
@@ -322,7 +322,7 @@ def _node(answer: Any, case: tuple[Bits, Bits, list[int]]) -> int:
     return int(value)
 
 
-def _recognise(answers: NDArray[Any], cases: list[Any], rules: list[Rule]) -> None:
+def _recognize(answers: NDArray[Any], cases: list[Any], rules: list[Rule]) -> None:
     """Say which of the usual mistakes was made, if it is one of them."""
     for rule, words in rules:
         if np.allclose(answers, [rule(*case) for case in cases]):

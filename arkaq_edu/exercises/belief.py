@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._ask import Rule, judge
+from arkaq_edu.exercises._ask import Rule, judge
 
 Rng = np.random.Generator | int | None
 Floats = NDArray[np.float64]

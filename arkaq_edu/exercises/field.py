@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import norm
 
-from ..field import pitch
-from ..field.camera import FOCAL_LENGTH
-from ._ask import ExerciseError, Rule, ask, judge, numbers
+from arkaq_edu.exercises._ask import ExerciseError, Rule, ask, judge, numbers
+from arkaq_edu.field import pitch
+from arkaq_edu.field.camera import FOCAL_LENGTH
 
 Rng = np.random.Generator | int | None
 
@@ -32,7 +32,7 @@ def check_pose(pose: Callable[..., Any], rng: Rng = None) -> str:
     pose : callable
         Takes the left and the right footstep (mm) of a robot at the origin that looks along x;
         returns x, y (mm) and heading (rad) after the cycle. An arc is right, and so is a straight
-        way in the mean heading, which is less than a millimetre off.
+        way in the mean heading, which is less than a millimeter off.
     rng : numpy.random.Generator or int, optional
         Where the random footsteps come from.
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._ask import ExerciseError, Rule, ask, numbers
+from arkaq_edu.exercises._ask import ExerciseError, Rule, ask, numbers
 
 Rng = np.random.Generator | int | None
 
@@ -121,7 +121,7 @@ changes nothing
 
 
 def check_nis(nis: Callable[..., Any], rng: Rng = None) -> str:
-    """Check a student's ``nis(innovation, S)``: the normalised innovation squared.
+    """Check a student's ``nis(innovation, S)``: the normalized innovation squared.
 
     Parameters
     ----------

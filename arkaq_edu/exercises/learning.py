@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._ask import ExerciseError, Rule, ask, judge
+from arkaq_edu.exercises._ask import ExerciseError, Rule, ask, judge
 
 Rng = np.random.Generator | int | None
 

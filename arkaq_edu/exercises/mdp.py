@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mdp import MDP
-from ._ask import ExerciseError, Rule, ask, judge, numbers
+from arkaq_edu.exercises._ask import ExerciseError, Rule, ask, judge, numbers
+from arkaq_edu.mdp import MDP
 
 Rng = np.random.Generator | int | None
 Floats = NDArray[np.float64]
 
 BACKED_UP = "Right: what the best action earns now, and what the states after it are worth."
 CHOSEN = "Right: from good values the best actions follow in one step."
-STEPPED = "Right: a guess, moved towards a better guess. No model was needed."
+STEPPED = "Right: a guess, moved toward a better guess. No model was needed."
 SETTLED = "Right: it forgets where it began, and it comes to rest."
 
 #: How many visits a rate is tried on, and what may be left of the start and of a target's scatter.

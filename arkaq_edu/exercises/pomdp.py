@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._ask import ExerciseError, Rule, ask, judge, numbers
-from .belief import any_belief
+from arkaq_edu.exercises._ask import ExerciseError, Rule, ask, judge, numbers
+from arkaq_edu.exercises.belief import any_belief
 
 Rng = np.random.Generator | int | None
 Floats = NDArray[np.float64]

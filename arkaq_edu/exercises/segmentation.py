@@ -1,4 +1,4 @@
-"""Checks for the notebook on state segmentation: scale a sighting, find a centre, learn."""
+"""Checks for the notebook on state segmentation: scale a sighting, find a center, learn."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..art import EuclideanART
-from ._ask import ExerciseError, ask, numbers
+from arkaq_edu.art import EuclideanART
+from arkaq_edu.exercises._ask import ExerciseError, ask, numbers
 
 Rng = np.random.Generator | int | None
 
 
 def check_scale(scale: Callable[..., Any], rng: Rng = None) -> str:
-    """Check a student's ``scale(distance, orientation)``: millimetres and radians to [-1, 1].
+    """Check a student's ``scale(distance, orientation)``: millimeters and radians to [-1, 1].
 
     Parameters
     ----------
@@ -72,14 +72,14 @@ def check_scale(scale: Callable[..., Any], rng: Rng = None) -> str:
 
 
 def check_nearest(nearest: Callable[..., Any], rng: Rng = None) -> str:
-    """Check a student's ``nearest(pattern, centers)``: the index of the nearest centre.
+    """Check a student's ``nearest(pattern, centers)``: the index of the nearest center.
 
     Parameters
     ----------
     nearest : callable
-        Takes a pattern, shape (2,), and centres, shape (n, 2); returns an index.
+        Takes a pattern, shape (2,), and centers, shape (n, 2); returns an index.
     rng : numpy.random.Generator or int, optional
-        Where the random patterns and centres come from.
+        Where the random patterns and centers come from.
 
     Returns
     -------
@@ -100,14 +100,14 @@ def check_nearest(nearest: Callable[..., Any], rng: Rng = None) -> str:
     >>> import numpy as np
     >>> check_nearest(lambda x, m: np.argmax(np.linalg.norm(m - x, axis=1)))
     Traceback (most recent call last):
-    arkaq_edu.exercises._ask.ExerciseError: you found the farthest centre of all
+    arkaq_edu.exercises._ask.ExerciseError: you found the farthest center of all
     """
     rng = np.random.default_rng(rng)
     cases = [(rng.uniform(-1, 1, 2), rng.uniform(-1, 1, (n, 2))) for n in range(1, 41)]
     answers = [_index(ask(nearest, pattern, centers), len(centers)) for pattern, centers in cases]
     gaps = [np.linalg.norm(centers - pattern, axis=1) for pattern, centers in cases]
     if all(gap[answer] == gap.min() for gap, answer in zip(gaps, answers, strict=True)):
-        return "Right: whatever the robot sees, you know which centre it belongs to."
+        return "Right: whatever the robot sees, you know which center it belongs to."
     for rule, words in WRONG_NEAREST:
         if answers == [rule(pattern, centers) for pattern, centers in cases]:
             raise ExerciseError(words)
@@ -115,7 +115,7 @@ def check_nearest(nearest: Callable[..., Any], rng: Rng = None) -> str:
         (gap, answer) for gap, answer in zip(gaps, answers, strict=True) if gap[answer] > gap.min()
     )
     raise ExerciseError(
-        f"among {len(gap)} centres you chose one at a distance of {gap[answer]:.3f}, "
+        f"among {len(gap)} centers you chose one at a distance of {gap[answer]:.3f}, "
         f"but there is one at {gap.min():.3f}"
     )
 
@@ -124,16 +124,16 @@ def check_nearest(nearest: Callable[..., Any], rng: Rng = None) -> str:
 WRONG_NEAREST: list[tuple[Callable[[NDArray[Any], NDArray[Any]], int], str]] = [
     (
         lambda x, m: int(np.argmax(np.linalg.norm(m - x, axis=1))),
-        "you found the farthest centre of all",
+        "you found the farthest center of all",
     ),
     (
         lambda x, m: int(np.argmin(np.abs(m - x)[:, 0])),
-        "you compare the first coordinate alone: a centre may be right in distance and far off in "
+        "you compare the first coordinate alone: a center may be right in distance and far off in "
         "orientation",
     ),
     (
         lambda x, m: int(np.argmin(np.abs(m - x)[:, 1])),
-        "you compare the second coordinate alone: a centre may be right in orientation and far off "
+        "you compare the second coordinate alone: a center may be right in orientation and far off "
         "in distance",
     ),
     (
@@ -147,7 +147,7 @@ WRONG_NEAREST: list[tuple[Callable[[NDArray[Any], NDArray[Any]], int], str]] = [
     ),
     (
         lambda x, m: int(np.argmax(m @ x)),
-        "you take the largest dot product: it favours centres far from the origin, however far "
+        "you take the largest dot product: it favors centers far from the origin, however far "
         "they are from the pattern",
     ),
     (
@@ -158,15 +158,15 @@ WRONG_NEAREST: list[tuple[Callable[[NDArray[Any], NDArray[Any]], int], str]] = [
 
 
 def check_present(present: Callable[..., Any], rng: Rng = None) -> str:
-    """Check a student's ``present(pattern, centers, vigilance, eta)``: found a centre or move one.
+    """Check a student's ``present(pattern, centers, vigilance, eta)``: found a center or move one.
 
     Parameters
     ----------
     present : callable
-        Takes a pattern, shape (2,), centres, shape (n, 2), the vigilance and the update factor;
-        returns the centres after the pattern was presented, shape (n, 2) or (n + 1, 2).
+        Takes a pattern, shape (2,), centers, shape (n, 2), the vigilance and the update factor;
+        returns the centers after the pattern was presented, shape (n, 2) or (n + 1, 2).
     rng : numpy.random.Generator or int, optional
-        Where the random patterns and centres come from.
+        Where the random patterns and centers come from.
 
     Returns
     -------
@@ -187,8 +187,8 @@ def check_present(present: Callable[..., Any], rng: Rng = None) -> str:
     >>> import numpy as np
     >>> check_present(lambda x, m, vigilance, eta: np.vstack([m, x]))
     Traceback (most recent call last):
-    arkaq_edu.exercises._ask.ExerciseError: a pattern within the vigilance of a centre founded \
-another one: here a centre should have moved
+    arkaq_edu.exercises._ask.ExerciseError: a pattern within the vigilance of a center founded \
+another one: here a center should have moved
     """
     rng = np.random.default_rng(rng)
     for _ in range(20):
@@ -198,7 +198,7 @@ another one: here a centre should have moved
     edge = _after(present, np.array([0.25, 0.5]), np.array([[0.0, 0.5]]), 0.25, 0.5)
     if len(edge) != 2:
         raise ExerciseError(
-            "a pattern at a distance of exactly the vigilance should found a centre: "
+            "a pattern at a distance of exactly the vigilance should found a center: "
             "only a smaller distance is near enough"
         )
     stream = rng.uniform(-1, 1, (150, 2))
@@ -208,8 +208,8 @@ another one: here a centre should have moved
     wanted = EuclideanART(0.3, 0.5).fit(stream).cluster_centers_
     if centers.shape != wanted.shape or not np.allclose(centers, wanted):
         raise ExerciseError(
-            f"single patterns are right, but after 150 in a row you have {len(centers)} centres "
-            f"where {len(wanted)} should be: does anything depend on the centres' number or order?"
+            f"single patterns are right, but after 150 in a row you have {len(centers)} centers "
+            f"where {len(wanted)} should be: does anything depend on the centers' number or order?"
         )
     return "Right: this is the whole of the learning. One pass over the stream, and there is a map."
 
@@ -218,11 +218,11 @@ def _index(answer: Any, n: int) -> int:
     value = np.asarray(answer)
     if value.shape != () or not np.issubdtype(value.dtype, np.integer):
         raise ExerciseError(
-            f"nearest should return the index of a centre, a whole number, not {answer!r}: "
+            f"nearest should return the index of a center, a whole number, not {answer!r}: "
             "which one it is, not how far or where"
         )
     if not 0 <= value < n:
-        raise ExerciseError(f"nearest returned {value}, but the centres have indices 0 to {n - 1}")
+        raise ExerciseError(f"nearest returned {value}, but the centers have indices 0 to {n - 1}")
     return int(value)
 
 
@@ -233,7 +233,7 @@ def _after(
     vigilance: float,
     eta: float,
 ) -> NDArray[np.float64]:
-    """Return the student's centres after one pattern, with only their number left to judge."""
+    """Return the student's centers after one pattern, with only their number left to judge."""
     n = len(centers)
     answer = ask(present, pattern, centers, vigilance, eta)
     more = n + 1 if np.shape(answer)[:1] == (n + 1,) else n
@@ -249,25 +249,25 @@ def _check_move(present: Callable[..., Any], rng: np.random.Generator) -> None:
     after = _after(present, centers[j] + step, centers, vigilance, eta)
     if len(after) > len(centers):
         raise ExerciseError(
-            "a pattern within the vigilance of a centre founded another one: "
-            "here a centre should have moved"
+            "a pattern within the vigilance of a center founded another one: "
+            "here a center should have moved"
         )
     moved = np.flatnonzero(np.abs(after - centers).max(axis=1) > 1e-12)
     if len(moved) == 0:
-        raise ExerciseError("a pattern within the vigilance of a centre left every centre in place")
+        raise ExerciseError("a pattern within the vigilance of a center left every center in place")
     if len(moved) > 1:
-        raise ExerciseError(f"{len(moved)} centres moved at once: only the nearest one should")
+        raise ExerciseError(f"{len(moved)} centers moved at once: only the nearest one should")
     if moved[0] != j:
-        raise ExerciseError("one centre moved, but not the one nearest to the pattern")
+        raise ExerciseError("one center moved, but not the one nearest to the pattern")
     went = after[j] - centers[j]
     along = went @ step / (step @ step)
     if not np.allclose(went, along * step):
-        raise ExerciseError("the centre should move along the straight line to the pattern")
+        raise ExerciseError("the center should move along the straight line to the pattern")
     if np.isclose(along, -eta):
-        raise ExerciseError("the centre moved away from the pattern: look at the sign")
+        raise ExerciseError("the center moved away from the pattern: look at the sign")
     if not np.isclose(along, eta):
         raise ExerciseError(
-            f"with eta {eta:.2f} the centre went {along:.2f} of the way to the pattern"
+            f"with eta {eta:.2f} the center went {along:.2f} of the way to the pattern"
         )
 
 
@@ -278,17 +278,17 @@ def _check_founding(present: Callable[..., Any], rng: np.random.Generator) -> No
     after = _after(present, pattern, centers, vigilance, 0.5)
     if len(after) == len(centers):
         raise ExerciseError(
-            "a pattern farther than the vigilance from every centre should found one of its own"
+            "a pattern farther than the vigilance from every center should found one of its own"
         )
     if not np.allclose(after[:-1], centers):
         raise ExerciseError(
-            "when a centre is founded the others should stay as they are, and the new one come last"
+            "when a center is founded the others should stay as they are, and the new one come last"
         )
     if not np.allclose(after[-1], pattern):
-        raise ExerciseError("a new centre should stand where its pattern is")
+        raise ExerciseError("a new center should stand where its pattern is")
 
 
 def _spread(rng: np.random.Generator, gap: float) -> NDArray[np.float64]:
-    """Return some centres, each more than `gap` from the others, in a random order."""
+    """Return some centers, each more than `gap` from the others, in a random order."""
     grid = np.stack(np.meshgrid(np.arange(3.0), np.arange(2.0)), axis=-1).reshape(-1, 2)
     return rng.permutation(grid) * 1.5 * gap + rng.uniform(-0.2, 0.2, (6, 2)) * gap

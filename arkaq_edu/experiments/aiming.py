@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu import _checks
-from arkaq_edu.arkaq import Learning, Sensing
+from arkaq_edu.arkaq import Sensing, TrainingSettings
 from arkaq_edu.envs.score_goal import KICK, STARTS, TURN_LEFT, TURN_RIGHT
 from arkaq_edu.field import GoalSupervisor, World, pitch
 from arkaq_edu.field.goal import CLOSEST, FARTHEST, GOAL_REWARD, MISS_REWARD
@@ -35,7 +35,7 @@ _WIDEST = 1.0  # rad; farther aside hardly a kick scores
 
 
 @lru_cache(maxsize=2)
-def kicked_ways(n: int = 500, seed: int = 0) -> Floats:
+def ball_paths(n: int = 500, seed: int = 0) -> Floats:
     """Kick `n` times up an open field.
 
     Parameters
@@ -56,7 +56,7 @@ def kicked_ways(n: int = 500, seed: int = 0) -> Floats:
 
     Examples
     --------
-    >>> ways = kicked_ways(n=50)
+    >>> ways = ball_paths(n=50)
     >>> bool(1800 < ways[:, -1, 0].mean() < 2800)
     True
     """
@@ -88,7 +88,7 @@ def spread_out(ways: Floats, factor: float) -> Floats:
 
     Examples
     --------
-    >>> bool(np.ptp(spread_out(kicked_ways(50), 0.0), axis=0).max() < 1e-6)
+    >>> bool(np.ptp(spread_out(ball_paths(50), 0.0), axis=0).max() < 1e-6)
     True
     """
     mean = ways.mean(axis=0)
@@ -101,7 +101,7 @@ def on_the_field(ways: Floats, distance: float, orientation: ArrayLike) -> Float
     Parameters
     ----------
     ways : ndarray, shape (n, points, 2)
-        As `kicked_ways` returns them.
+        As `ball_paths` returns them.
     distance : float
         How far straight before the goal the robot stands (mm).
     orientation : array_like, shape (n,) or (m, 1)
@@ -178,7 +178,7 @@ def chance(ways: Floats, distance: float, orientations: ArrayLike) -> Floats:
 
     Examples
     --------
-    >>> straight, aside = chance(kicked_ways(50), 1850.0, [0.0, 0.4])
+    >>> straight, aside = chance(ball_paths(50), 1850.0, [0.0, 0.4])
     >>> bool(straight > 0.4 > 0.2 > aside)
     True
     """
@@ -192,7 +192,7 @@ def chances(ways: Floats, distance: float) -> Floats:
 
     Examples
     --------
-    >>> chances(kicked_ways(50), 1850.0).shape
+    >>> chances(ball_paths(50), 1850.0).shape
     (481,)
     """
     looked = np.linspace(-_WIDEST, _WIDEST, 81)
@@ -200,7 +200,7 @@ def chances(ways: Floats, distance: float) -> Floats:
 
 
 def category(centers: ArrayLike, orientations: ArrayLike) -> NDArray[np.intp]:
-    """Return which centre is nearest to each orientation: the agent's state.
+    """Return which center is nearest to each orientation: the agent's state.
 
     Parameters
     ----------
@@ -223,7 +223,7 @@ def after_turns(values: Floats) -> Floats:
 
     A turn moves by `STEPS` places of the grid, give or take a normal error. Three points at -1, 0
     and 1 times the square root of 3 sigmas, with weights 1/6, 2/3, 1/6, have its moments; the
-    outer two lie between neighbours on the grid. Beyond the grid, eight turns aside, all is lost.
+    outer two lie between neighbors on the grid. Beyond the grid, eight turns aside, all is lost.
 
     Parameters
     ----------
@@ -247,7 +247,9 @@ def after_turns(values: Floats) -> Floats:
     return np.array([mean[..., :n], mean[..., -n:]])
 
 
-def plan(scores: Floats, centers: ArrayLike, learning: Learning | None = None) -> NDArray[np.intp]:
+def plan(
+    scores: Floats, centers: ArrayLike, learning: TrainingSettings | None = None
+) -> NDArray[np.intp]:
     """Return the best action of every state: what Q-learning would come to, given all the time.
 
     All orientations of a state count alike. The state "kicked" earns nothing and is never left.
@@ -258,8 +260,8 @@ def plan(scores: Floats, centers: ArrayLike, learning: Learning | None = None) -
         The chance that a kick scores, on `GRID`.
     centers : array_like, shape (k, 1)
         The states.
-    learning : Learning, optional
-        Discount and cost of a cycle; by default ``Learning.goal()``.
+    learning : TrainingSettings, optional
+        Discount and cost of a cycle; by default ``TrainingSettings.goal()``.
 
     Returns
     -------
@@ -271,15 +273,15 @@ def plan(scores: Floats, centers: ArrayLike, learning: Learning | None = None) -
 
     Examples
     --------
-    >>> scores = chances(kicked_ways(50), 1850.0)
+    >>> scores = chances(ball_paths(50), 1850.0)
     >>> plan(scores, [[-0.8], [-0.4], [0.0], [0.4], [0.8]]).tolist()
     [1, 1, 2, 0, 0]
     """
-    learning = learning or Learning.goal()
+    learning = learning or TrainingSettings.goal()
     k = len(np.ravel(centers))
     sensing = Sensing.goal()
     view = GRID[np.abs(GRID) <= sensing.high[0] + sensing.B[0][TURN_RIGHT]]
-    # The centres too: between two places of the grid may lie a whole state.
+    # The centers too: between two places of the grid may lie a whole state.
     seen = np.append(view, sensing.unscale(centers))
     inside = np.eye(k)[:, category(centers, seen)]
     inside /= inside.sum(axis=1, keepdims=True)
@@ -334,7 +336,7 @@ def prospects(scores: Floats, actions: NDArray[np.intp]) -> Prospects:
 
     Examples
     --------
-    >>> scores = chances(kicked_ways(50), 1850.0)
+    >>> scores = chances(ball_paths(50), 1850.0)
     >>> at_once = np.full(len(GRID), KICK)
     >>> learned, best, random = prospects(scores, at_once).over_starts()
     >>> bool(random < learned < best)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from arkaq_edu import _checks
 from arkaq_edu._paths import data_file
-from arkaq_edu.arkaq import Arkaq, Estimator, Learning
+from arkaq_edu.arkaq import Arkaq, Estimator, TrainingSettings
 from arkaq_edu.envs.ball_approach import FOOTSTEPS
 from arkaq_edu.field import pitch
 from arkaq_edu.field.supervisor import FARTHEST, random_place
@@ -57,7 +57,7 @@ def train(
     vigilance: float = 0.1,
     *,
     sensing: str = "consistent",
-    learning: Learning | None = None,
+    learning: TrainingSettings | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
     progress: bool = True,
 ) -> Arkaq:
@@ -71,7 +71,7 @@ def train(
         See `Arkaq`.
     sensing : {"consistent", "thesis"}
         The Kalman filter's settings.
-    learning : Learning, optional
+    learning : TrainingSettings, optional
         Schedules and lengths.
     checkpoint : path, optional
         File the run is kept in and taken up from; see `Arkaq.learn`.
@@ -84,7 +84,7 @@ def train(
 
     Examples
     --------
-    >>> brief = Learning(patterns=200, exploration=500, exploitation=0)
+    >>> brief = TrainingSettings(patterns=200, exploration=500, exploitation=0)
     >>> train(seed=1, learning=brief, progress=False).cycles >= 500
     True
     """

@@ -1,6 +1,6 @@
 """The second experiment of the thesis: learn to score a goal, against chance and the best there is.
 
-The robot turns towards the goal and kicks; what it sees is one number, the goal's orientation.
+The robot turns toward the goal and kicks; what it sees is one number, the goal's orientation.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from tqdm.auto import tqdm
 
 from arkaq_edu import _checks
 from arkaq_edu._paths import data_file
-from arkaq_edu.arkaq import Arkaq, Estimator, Learning, Sensing
+from arkaq_edu.arkaq import Arkaq, Estimator, Sensing, TrainingSettings
 from arkaq_edu.envs.score_goal import ACTIONS, KICK, STARTS, TURN_LEFT, TURN_RIGHT
 from arkaq_edu.experiments.approach import Choice, Policy, greedy
 from arkaq_edu.experiments.streams import count_centers
@@ -37,7 +37,7 @@ KICKS = {"near": 1400, "far": 1500}
 #: Kicks of one entry of a curve, and fresh kicks by which a policy that no longer learns is judged.
 BLOCK, FRESH = 50, 300
 
-_LEARNING_FAR = Learning.goal(exploration=1000, exploitation=11_000)
+_LEARNING_FAR = TrainingSettings.goal(exploration=1000, exploitation=11_000)
 _COLUMNS = ["episode", "cycle", "action", "orientation", "visible", "true_orientation"]
 
 
@@ -94,7 +94,9 @@ def make_look_around(
     >>> make_look_around().unwrapped.patience
     51
     """
-    period = Learning.goal().period if period is None else _checks.integer("period", period, 1)
+    period = (
+        TrainingSettings.goal().period if period is None else _checks.integer("period", period, 1)
+    )
     return LookAround(make_task(goal_distance, patience=period + 1))
 
 
@@ -103,7 +105,7 @@ def train(
     vigilance: float | None = None,
     goal_distance: Distance = "near",
     *,
-    learning: Learning | None = None,
+    learning: TrainingSettings | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
     progress: bool = True,
 ) -> Arkaq:
@@ -117,9 +119,9 @@ def train(
         See `Arkaq`; by default the thesis's, .06 near and .05 far.
     goal_distance : {"near", "far"}
         Where the robot stands; see `arkaq_edu.envs.ScoreGoalEnv`.
-    learning : Learning, optional
-        Schedules and lengths; by default ``Learning.goal()``, far with twice the cycles: where
-        two kicks in three miss at best, it takes that long to tell the best from the others.
+    learning : TrainingSettings, optional
+        By default ``TrainingSettings.goal()``, far with twice the cycles:
+        where two kicks in three miss at best, it takes that long to tell the best action.
     checkpoint : path, optional
         File the run is kept in and taken up from; see `Arkaq.learn`.
     progress : bool
@@ -135,7 +137,7 @@ def train(
     so the value of a kick wavers with a standard deviation of sqrt(.02 / 2) * 96 = 10, where 96 is
     that of one reward. Far, a turn and the best kick are hardly farther apart, and a few runs in
     thirty end with a policy that turns to and fro before it kicks, or never does; `rates` counts
-    them. Weights that fall faster would be calmer, but never lose the optimism of the first values.
+    them. Weights that fall faster would be calmer, but never lose the optimizm of the first values.
 
     References
     ----------
@@ -143,14 +145,14 @@ def train(
 
     Examples
     --------
-    >>> brief = Learning.goal(patterns=100, exploration=50, exploitation=0)
+    >>> brief = TrainingSettings.goal(patterns=100, exploration=50, exploitation=0)
     >>> train(seed=1, learning=brief, progress=False).q.Q.shape[1]
     3
     """
     _known(goal_distance)
     vigilance = VIGILANCE[goal_distance] if vigilance is None else vigilance
     if learning is None:
-        learning = Learning.goal() if goal_distance == "near" else _LEARNING_FAR
+        learning = TrainingSettings.goal() if goal_distance == "near" else _LEARNING_FAR
     agent = Arkaq(vigilance, task="goal", learning=learning, rng=seed)
     look_around = make_look_around(goal_distance, agent.learning.period)
     agent.segment(look_around, checkpoint=checkpoint, progress=progress)
@@ -504,7 +506,7 @@ def record_orientations(n: int = 2000, seed: int = 0, period: int | None = None)
     seed : int
         The seed of everything drawn.
     period : int, optional
-        Turns between resets; by default that of ``Learning.goal()``.
+        Turns between resets; by default that of ``TrainingSettings.goal()``.
 
     Returns
     -------
@@ -676,7 +678,7 @@ def play(
     goal_distance: Distance,
     kicks: int | None = None,
     fresh: int = FRESH,
-    learning: Learning | None = None,
+    learning: TrainingSettings | None = None,
 ) -> pd.DataFrame:
     """Let everybody kick: an agent that learns, random actions, and the oracle.
 
@@ -689,7 +691,7 @@ def play(
         How many kicks the agent while it learns, and random actions have; by default `KICKS`.
     fresh : int
         How many the others have.
-    learning : Learning, optional
+    learning : TrainingSettings, optional
         See `train`.
 
     Returns
@@ -704,7 +706,7 @@ def play(
 
     Examples
     --------
-    >>> brief = Learning.goal(patterns=100, exploration=200, exploitation=0)
+    >>> brief = TrainingSettings.goal(patterns=100, exploration=200, exploitation=0)
     >>> play(0, "near", kicks=50, fresh=50, learning=brief).who.tolist()
     ['ARKAQ', 'ARKAQ, learned', 'random actions', 'oracle']
     """
@@ -797,10 +799,10 @@ def rates(table: pd.DataFrame, last: int = 200) -> pd.DataFrame:
     return share.unstack(["goal_distance", "who"])
 
 
-def centre_counts(
+def center_counts(
     seeds: Iterable[int] = range(20), vigilances: Sequence[float] = VIGILANCES, n: int = 2000
 ) -> pd.DataFrame:
-    """Return how many centres the streams of many seeds found.
+    """Return how many centers the streams of many seeds found.
 
     Parameters
     ----------
@@ -821,7 +823,7 @@ def centre_counts(
 
     Examples
     --------
-    >>> centre_counts([0, 1], n=100).shape
+    >>> center_counts([0, 1], n=100).shape
     (2, 3)
     """
     found = {
@@ -830,12 +832,12 @@ def centre_counts(
     return pd.DataFrame(found).T.rename_axis("seed")
 
 
-def load_centre_counts() -> pd.DataFrame:
-    """Return the counts kept with the course: ``centre_counts(range(30))``.
+def load_center_counts() -> pd.DataFrame:
+    """Return the counts kept with the course: ``center_counts(range(30))``.
 
     Examples
     --------
-    >>> load_centre_counts().columns.tolist()
+    >>> load_center_counts().columns.tolist()
     [0.075, 0.06, 0.05]
     """
-    return pd.read_csv(data_file("goal_centres.csv"), index_col="seed").rename(columns=float)
+    return pd.read_csv(data_file("goal_centers.csv"), index_col="seed").rename(columns=float)

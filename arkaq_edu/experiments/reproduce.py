@@ -14,7 +14,7 @@ from tqdm.auto import tqdm
 
 from arkaq_edu import _checks
 from arkaq_edu._paths import data_file
-from arkaq_edu.arkaq import Estimator, Learning, Sensing
+from arkaq_edu.arkaq import Estimator, Sensing, TrainingSettings
 from arkaq_edu.experiments import approach, goal, streams
 from arkaq_edu.field import World
 
@@ -26,7 +26,7 @@ def thesis_numbers() -> pd.Series:
 
     Examples
     --------
-    >>> int(thesis_numbers()["centres, vigilance 0.1"])
+    >>> int(thesis_numbers()["centers, vigilance 0.1"])
     333
     """
     return pd.read_csv(data_file("thesis.csv"), index_col="quantity").thesis
@@ -57,7 +57,7 @@ def goal_table() -> pd.DataFrame:
     >>> table.thesis["goals (%), near, ARKAQ"], int(table.seeds.min())
     (np.float64(60.0), 30)
     """
-    counts = goal.load_centre_counts().add_prefix("goal centres, vigilance ")
+    counts = goal.load_center_counts().add_prefix("goal centers, vigilance ")
     shares = goal.rates(goal.load_study()).drop(columns="ARKAQ", level="who")
     names = {"ARKAQ, learned": "ARKAQ", "oracle": "planner that sees the truth"}
     shares.columns = [f"goals (%), {place}, {names.get(who, who)}" for place, who in shares.columns]
@@ -82,7 +82,7 @@ def agent_file(folder: str | os.PathLike[str], kind: str, seed: int) -> Path:
     >>> agent_file("out", "thesis", 3).as_posix()
     'out/agents/ball-thesis-seed03.npz'
     """
-    task = "goal" if kind in goal.VIGILANCE else "ball"
+    task = "goal" if kind in goal.VIGILANCE else "approach"
     return Path(folder) / "agents" / f"{task}-{kind}-seed{seed:02d}.npz"
 
 
@@ -92,8 +92,8 @@ def results(
     folder: str | os.PathLike[str] | None = None,
     jobs: int = -1,
     progress: bool = True,
-    learning: Learning | None = None,
-    goal_learning: Learning | None = None,
+    learning: TrainingSettings | None = None,
+    goal_learning: TrainingSettings | None = None,
 ) -> pd.DataFrame:
     """Run both problems over many seeds and set them against the thesis.
 
@@ -110,7 +110,7 @@ def results(
         Processes at once; -1 for one a core.
     progress : bool
         Whether to show a progress bar.
-    learning, goal_learning : Learning, optional
+    learning, goal_learning : TrainingSettings, optional
         Schedules and lengths of the trainings for the ball, and for the goal.
 
     Returns
@@ -129,7 +129,7 @@ def results(
 
     Examples
     --------
-    >>> brief = Learning(patterns=200, exploration=200, exploitation=0)
+    >>> brief = TrainingSettings(patterns=200, exploration=200, exploitation=0)
     >>> table = results(1, 2, jobs=1, progress=False, learning=brief, goal_learning=brief)
     >>> table.columns.tolist()
     ['quantity', 'thesis', 'mean', 'low', 'high', 'seeds']
@@ -165,10 +165,10 @@ def summary(rows: pd.DataFrame) -> pd.DataFrame:
 
     Examples
     --------
-    >>> rows = pd.DataFrame({"quantity": "centres, vigilance 0.15", "seed": [0, 1],
+    >>> rows = pd.DataFrame({"quantity": "centers, vigilance 0.15", "seed": [0, 1],
     ...                      "value": [150, 152]})
     >>> summary(rows)[["quantity", "thesis", "mean", "seeds"]].values.tolist()
-    [['centres, vigilance 0.15', 137, 151.0, 2]]
+    [['centers, vigilance 0.15', 137, 151.0, 2]]
     """
     rows = rows.sort_values(["quantity", "seed"])
     by_quantity = rows.groupby("quantity").value
@@ -199,7 +199,7 @@ def _stream(seed: int) -> tuple[int, dict[str, float]]:
     """Measure one recorded stream, and one walk meant to go straight."""
     stream = streams.record_sightings(seed=seed)
     counts = streams.count_centers(streams.patterns(stream))
-    measured = {f"centres, vigilance {rho:g}": float(n) for rho, n in counts.items()}
+    measured = {f"centers, vigilance {rho:g}": float(n) for rho, n in counts.items()}
     for name in ("consistent", "thesis"):
         measured[f"mean NIS (2 is right), {name} Kalman filter"] = mean_nis(
             stream, getattr(Sensing, name)()
@@ -215,7 +215,7 @@ def _stream(seed: int) -> tuple[int, dict[str, float]]:
 
 
 def mean_nis(stream: pd.DataFrame, sensing: Sensing) -> float:
-    """Return the mean normalised innovation squared of a filter on a stream.
+    """Return the mean normalized innovation squared of a filter on a stream.
 
     Parameters
     ----------
@@ -258,7 +258,7 @@ def _training(
     sensing: str,
     approaches: int,
     folder: str | os.PathLike[str] | None,
-    learning: Learning | None,
+    learning: TrainingSettings | None,
 ) -> tuple[int, dict[str, float]]:
     agent = approach.train(
         seed,
@@ -280,10 +280,10 @@ def _checkpoint(folder: str | os.PathLike[str] | None, kind: str, seed: int) -> 
     return path
 
 
-def _orientations(seed: int, learning: Learning | None) -> tuple[int, dict[str, float]]:
-    looks = (learning or Learning.goal()).patterns
-    counts = goal.centre_counts([seed], n=looks).loc[seed]
-    return seed, {f"goal centres, vigilance {rho:g}": float(n) for rho, n in counts.items()}
+def _orientations(seed: int, learning: TrainingSettings | None) -> tuple[int, dict[str, float]]:
+    looks = (learning or TrainingSettings.goal()).patterns
+    counts = goal.center_counts([seed], n=looks).loc[seed]
+    return seed, {f"goal centers, vigilance {rho:g}": float(n) for rho, n in counts.items()}
 
 
 def _goals(
@@ -291,7 +291,7 @@ def _goals(
     distance: goal.Distance,
     kicks: int,
     folder: str | os.PathLike[str] | None,
-    learning: Learning | None,
+    learning: TrainingSettings | None,
 ) -> tuple[int, dict[str, float]]:
     agent = goal.train(
         seed,

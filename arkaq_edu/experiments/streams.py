@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu import _checks
 from arkaq_edu._paths import data_file
-from arkaq_edu.arkaq import Learning, Sensing
+from arkaq_edu.arkaq import Sensing, TrainingSettings
 from arkaq_edu.art import EuclideanART
 
 VIGILANCES = (0.15, 0.1, 0.075, 0.05, 0.025)
@@ -41,7 +41,7 @@ def record_sightings(n: int = 6500, seed: int = 0, period: int | None = None) ->
     seed : int
         The seed of everything drawn.
     period : int, optional
-        Cycles between resets; by default that of `Learning`.
+        Cycles between resets; by default that of `TrainingSettings`.
 
     Returns
     -------
@@ -61,7 +61,7 @@ def record_sightings(n: int = 6500, seed: int = 0, period: int | None = None) ->
     (50, True)
     """
     _checks.integer("n", n, 1)
-    period = Learning().period if period is None else _checks.integer("period", period, 1)
+    period = TrainingSettings().period if period is None else _checks.integer("period", period, 1)
     env = gymnasium.make("arkaq_edu:BallApproach-v0", placement="thesis")
     rng = np.random.default_rng(_checks.integer("seed", seed))
     rows: list[tuple[float, ...]] = []
@@ -130,7 +130,7 @@ def count_centers(
     vigilances: Sequence[float] = VIGILANCES,
     learning_rate: float | None = None,
 ) -> pd.Series:
-    """Return how many centres one stream of patterns founds at each vigilance.
+    """Return how many centers one stream of patterns founds at each vigilance.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def count_centers(
         The patterns, in the order of presentation.
     vigilances : sequence of float
     learning_rate : float, optional
-        The update factor eta; by default that of `Learning`.
+        The update factor eta; by default that of `TrainingSettings`.
 
     Returns
     -------
@@ -153,9 +153,9 @@ def count_centers(
     >>> count_centers([[0.0], [0.2], [0.9]], vigilances=[0.5, 0.1]).tolist()
     [2, 3]
     """
-    eta = Learning().learning_rate if learning_rate is None else learning_rate
+    eta = TrainingSettings().learning_rate if learning_rate is None else learning_rate
     counts = [EuclideanART(rho, eta).fit(X).n_clusters_ for rho in vigilances]
-    return pd.Series(counts, index=pd.Index(vigilances, name="vigilance"), name="centres")
+    return pd.Series(counts, index=pd.Index(vigilances, name="vigilance"), name="centers")
 
 
 def calibrate(stream: pd.DataFrame) -> Sensing:

@@ -1,7 +1,7 @@
 """The camera: pixels first, and from them where the ball and the goal are.
 
 The ball's blob of pixels gives its distance and orientation, the goal's pixels on the horizon
-its orientation and width. One ray is cast through the centre of a pixel and returns the colour it
+its orientation and width. One ray is cast through the center of a pixel and returns the color it
 meets. The whole picture is all 33,280 rays; while learning, only those that matter are cast. Both
 show the same.
 """
@@ -65,8 +65,8 @@ def _ball_hit(ox, oy, oz, dx, dy, dz, bx, by):
 
 @kernel
 def _upright_hit(ox, oy, oz, dx, dy, dz, panels, posts, nearest):
-    """Return how far the nearest wall, panel or post is met before `nearest`, and its colour."""
-    colour = -1.0
+    """Return how far the nearest wall, panel or post is met before `nearest`, and its color."""
+    color = -1.0
     for i in range(panels.shape[0]):
         px, py = panels[i, 0] - ox, panels[i, 1] - oy
         wx, wy = panels[i, 2] - panels[i, 0], panels[i, 3] - panels[i, 1]
@@ -77,7 +77,7 @@ def _upright_hit(ox, oy, oz, dx, dy, dz, panels, posts, nearest):
         along = (px * dy - py * dx) / cross
         z = oz + t * dz
         if 0.0 < t < nearest and 0.0 <= along <= 1.0 and 0.0 <= z <= panels[i, 4]:
-            nearest, colour = t, panels[i, 5]
+            nearest, color = t, panels[i, 5]
     a = dx * dx + dy * dy
     for i in range(posts.shape[0]):
         px, py = posts[i, 0] - ox, posts[i, 1] - oy
@@ -87,13 +87,13 @@ def _upright_hit(ox, oy, oz, dx, dy, dz, panels, posts, nearest):
             continue
         t = (b - math.sqrt(inside)) / a
         if 0.0 < t < nearest and 0.0 <= oz + t * dz <= posts[i, 3]:
-            nearest, colour = t, posts[i, 4]
-    return nearest, colour
+            nearest, color = t, posts[i, 4]
+    return nearest, color
 
 
 @kernel
-def _ground_colour(x, y, lines):
-    """Return the colour of the carpet, its lines and what lies beyond it."""
+def _ground_color(x, y, lines):
+    """Return the color of the carpet, its lines and what lies beyond it."""
     half = pitch.LINE_WIDTH / 2
     if abs(x) > pitch.CARPET_LENGTH / 2 or abs(y) > pitch.CARPET_WIDTH / 2:
         return pitch.NOTHING
@@ -109,7 +109,7 @@ def _ground_colour(x, y, lines):
 
 @kernel
 def _direction(col, row, heading, tilt):
-    """Return the direction of the ray through the centre of a pixel, in the field's frame."""
+    """Return the direction of the ray through the center of a pixel, in the field's frame."""
     right, down = col + 0.5 - WIDTH / 2, row + 0.5 - HEIGHT / 2
     ahead = FOCAL_LENGTH * math.cos(tilt) - down * math.sin(tilt)
     up = -FOCAL_LENGTH * math.sin(tilt) - down * math.cos(tilt)
@@ -118,32 +118,32 @@ def _direction(col, row, heading, tilt):
 
 
 @kernel
-def _colour(col, row, x, y, z, heading, tilt, bx, by, panels, posts, lines):
-    """Return the colour that the ray through one pixel meets first."""
+def _color(col, row, x, y, z, heading, tilt, bx, by, panels, posts, lines):
+    """Return the color that the ray through one pixel meets first."""
     dx, dy, dz = _direction(col, row, heading, tilt)
     t = _ball_hit(x, y, z, dx, dy, dz, bx, by)
-    nearest, colour = _upright_hit(x, y, z, dx, dy, dz, panels, posts, t)
-    if colour >= 0.0:
-        return int(colour)
+    nearest, color = _upright_hit(x, y, z, dx, dy, dz, panels, posts, t)
+    if color >= 0.0:
+        return int(color)
     if nearest < np.inf:
         return pitch.ORANGE
     if dz >= 0.0:
         return pitch.NOTHING
-    return _ground_colour(x - z / dz * dx, y - z / dz * dy, lines)
+    return _ground_color(x - z / dz * dx, y - z / dz * dy, lines)
 
 
 @kernel
 def _row(row, x, y, z, heading, tilt, bx, by, panels, posts, lines, image):
     """Cast the rays of one row."""
     for col in range(WIDTH):
-        image[col] = _colour(col, row, x, y, z, heading, tilt, bx, by, panels, posts, lines)
+        image[col] = _color(col, row, x, y, z, heading, tilt, bx, by, panels, posts, lines)
 
 
 @kernel
 def _plumb(cols, x, y, z, heading, tilt, bx, by, panels, posts, lines, image):
     """Cast one ray a row, each in a column of its own."""
     for row in range(HEIGHT):
-        image[row] = _colour(cols[row], row, x, y, z, heading, tilt, bx, by, panels, posts, lines)
+        image[row] = _color(cols[row], row, x, y, z, heading, tilt, bx, by, panels, posts, lines)
 
 
 @kernel
@@ -176,7 +176,7 @@ def _count(blob, col, row):
 
 @kernel
 def _blob_of_picture(image, blob):
-    """Gather the pixels of the ball's colour."""
+    """Gather the pixels of the ball's color."""
     _clear(blob)
     for row in range(HEIGHT):
         for col in range(WIDTH):
@@ -204,8 +204,8 @@ def _blob_of_world(x, y, z, heading, tilt, bx, by, panels, posts, blob):
             dx, dy, dz = _direction(col, row, heading, tilt)
             t = _ball_hit(x, y, z, dx, dy, dz, bx, by)
             if t < np.inf:
-                _, colour = _upright_hit(x, y, z, dx, dy, dz, panels, posts, t)
-                if colour < 0.0:
+                _, color = _upright_hit(x, y, z, dx, dy, dz, panels, posts, t)
+                if color < 0.0:
                     _count(blob, col, row)
 
 
@@ -276,7 +276,7 @@ class Camera:
         How far the optical axis looks down (rad), in [0, 1]. At .2 the ball stays in the
         picture from 300 mm to the far wall.
     min_pixels : int
-        The smallest blob that counts as a ball. Smaller ones are what a colour table takes for
+        The smallest blob that counts as a ball. Smaller ones are what a color table takes for
         a ball by mistake. It limits how far the robot sees: a ball at 4,100 mm covers about
         12 pixels, and sightings begin to drop out from 4,300 mm on.
 
@@ -318,7 +318,7 @@ class Camera:
         Returns
         -------
         Sighting or None
-            None where too few pixels show the ball, or its centre lies outside the picture; and
+            None where too few pixels show the ball, or its center lies outside the picture; and
             while the head moves.
         """
         if self.blurred(world):
@@ -329,20 +329,20 @@ class Camera:
             return seen
         return Sighting(seen.distance, seen.orientation + world.pan)
 
-    def sighting_in(self, colours: np.ndarray) -> Sighting | None:
+    def sighting_in(self, colors: np.ndarray) -> Sighting | None:
         """Return what a rendered picture shows of the ball.
 
         Parameters
         ----------
-        colours : ndarray of uint8, shape (160, 208)
-            A picture as `colours` gives it.
+        colors : ndarray of uint8, shape (160, 208)
+            A picture as `colors` gives it.
 
         Returns
         -------
         Sighting or None
             The same as `sighting` from the same place with the head straight.
         """
-        _blob_of_picture(self._checked(colours), self._blob)
+        _blob_of_picture(self._checked(colors), self._blob)
         return self._sighting()
 
     def goal(self, world: World) -> GoalSighting | None:
@@ -386,28 +386,28 @@ class Camera:
         seen = self._goal(horizon, plumb)
         return seen and seen._replace(orientation=seen.orientation + world.pan)
 
-    def goal_in(self, colours: np.ndarray) -> GoalSighting | None:
+    def goal_in(self, colors: np.ndarray) -> GoalSighting | None:
         """Return what a rendered picture shows of the sky-blue goal.
 
         Parameters
         ----------
-        colours : ndarray of uint8, shape (160, 208)
-            A picture as `colours` gives it.
+        colors : ndarray of uint8, shape (160, 208)
+            A picture as `colors` gives it.
 
         Returns
         -------
         GoalSighting or None
             The same as `goal` from the same place with the head straight.
         """
-        colours = self._checked(colours)
-        return self._goal(colours[self._horizon], lambda cols: colours[np.arange(HEIGHT), cols])
+        colors = self._checked(colors)
+        return self._goal(colors[self._horizon], lambda cols: colors[np.arange(HEIGHT), cols])
 
     def blurred(self, world: World) -> bool:
         """Return whether a picture taken now would be useless, for the head moves."""
         return world.head.blurs and world.unsettled > 0.0
 
-    def colours(self, world: World) -> np.ndarray:
-        """Return the colour-segmented picture: an index into `pitch.PALETTE` a pixel.
+    def colors(self, world: World) -> np.ndarray:
+        """Return the color-segmented picture: an index into `pitch.PALETTE` a pixel.
 
         Returns
         -------
@@ -418,13 +418,13 @@ class Camera:
         return image
 
     def picture(self, world: World) -> np.ndarray:
-        """Return the picture in colour (figure 5.3).
+        """Return the picture in color (figure 5.3).
 
         Returns
         -------
         ndarray of uint8, shape (160, 208, 3)
         """
-        return pitch.PALETTE[self.colours(world)]
+        return pitch.PALETTE[self.colors(world)]
 
     def distance_error(self, distance: float, pixels: float = 0.05) -> float:
         """Return the error of the distance (mm) that an error of the blob's radius makes.
@@ -448,10 +448,10 @@ class Camera:
         return x, y, self.height, heading + world.pan, self.tilt, *world.ball
 
     @staticmethod
-    def _checked(colours: np.ndarray) -> np.ndarray:
-        if colours.shape != (HEIGHT, WIDTH):
-            raise ValueError(f"colours must have shape ({HEIGHT}, {WIDTH}), got {colours.shape}")
-        return colours
+    def _checked(colors: np.ndarray) -> np.ndarray:
+        if colors.shape != (HEIGHT, WIDTH):
+            raise ValueError(f"colors must have shape ({HEIGHT}, {WIDTH}), got {colors.shape}")
+        return colors
 
     @property
     def _horizon(self) -> int:

@@ -35,7 +35,7 @@ class Kick:
     ----------
     spread : float
         Standard deviation of where the ball lies before the kick (mm), ahead and across alike, in
-        [0, 12]. Grabbing depends on the jaw and on friction and is not modelled; the supervisor
+        [0, 12]. Grabbing depends on the jaw and on friction and is not modeled; the supervisor
         sets the ball, as well as the robot would (thesis 5.1.3.3).
     swerve : float
         The strongest sideways pull on a rolling ball (mm/s^2), in [0, 200]; drawn once a kick,

@@ -1,6 +1,6 @@
 """The pitch: every length of the field, the ball and the robot, in one place, with its origin.
 
-The origin is the centre spot. The x axis points at the sky-blue goal, y to the left of it, z up.
+The origin is the center spot. The x axis points at the sky-blue goal, y to the left of it, z up.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ ROBOT_MASS = 1650.0
 # Shapes of one group do not touch each other: the body and its own paw.
 ROBOT_GROUP = 1
 
-NOTHING, GREEN, WHITE, YELLOW, BLUE, ORANGE, GREY = range(7)
+NOTHING, GREEN, WHITE, YELLOW, BLUE, ORANGE, Gray = range(7)
 PALETTE = np.array(
     [
         (214, 224, 232),  # what lies beyond the wall
@@ -50,23 +50,23 @@ def panels() -> np.ndarray:
     Returns
     -------
     ndarray, shape (n, 6)
-        A row a face: x1, y1, x2, y2 of its foot, its height (mm), its colour's index in `PALETTE`.
+        A row a face: x1, y1, x2, y2 of its foot, its height (mm), its color's index in `PALETTE`.
     """
     x, y = CARPET_LENGTH / 2, CARPET_WIDTH / 2
     rows = [
-        (-x, -y, x, -y, WALL_HEIGHT, GREY),
-        (-x, y, x, y, WALL_HEIGHT, GREY),
-        (-x, -y, -x, y, WALL_HEIGHT, GREY),
-        (x, -y, x, y, WALL_HEIGHT, GREY),
+        (-x, -y, x, -y, WALL_HEIGHT, Gray),
+        (-x, y, x, y, WALL_HEIGHT, Gray),
+        (-x, -y, -x, y, WALL_HEIGHT, Gray),
+        (x, -y, x, y, WALL_HEIGHT, Gray),
     ]
-    for side, colour in ((-1, YELLOW), (1, BLUE)):
+    for side, color in ((-1, YELLOW), (1, BLUE)):
         mouth, back, half = side * LENGTH / 2, side * (LENGTH / 2 + GOAL_DEPTH), GOAL_WIDTH / 2
         # The side panels stand outside the mouth, flush with the inner faces of the posts.
         rows += [
-            (mouth, -half, back, -half, GOAL_HEIGHT, colour),
-            (mouth, half, back, half, GOAL_HEIGHT, colour),
-            # A millimetre before the wall, which would else hide it.
-            (back - side, -half, back - side, half, GOAL_HEIGHT, colour),
+            (mouth, -half, back, -half, GOAL_HEIGHT, color),
+            (mouth, half, back, half, GOAL_HEIGHT, color),
+            # A millimeter before the wall, which would else hide it.
+            (back - side, -half, back - side, half, GOAL_HEIGHT, color),
         ]
     return np.array(rows, dtype=np.float64)
 
@@ -77,14 +77,14 @@ def posts() -> np.ndarray:
     Returns
     -------
     ndarray, shape (4, 5)
-        A row a post: x, y of its axis, its radius, its height (mm), its colour's index. The inner
+        A row a post: x, y of its axis, its radius, its height (mm), its color's index. The inner
         faces of a goal's two posts are `GOAL_WIDTH` apart.
     """
     y = GOAL_WIDTH / 2 + POST_RADIUS
     return np.array(
         [
-            (side * LENGTH / 2, sign * y, POST_RADIUS, GOAL_HEIGHT, colour)
-            for side, colour in ((-1, YELLOW), (1, BLUE))
+            (side * LENGTH / 2, sign * y, POST_RADIUS, GOAL_HEIGHT, color)
+            for side, color in ((-1, YELLOW), (1, BLUE))
             for sign in (-1, 1)
         ],
         dtype=np.float64,

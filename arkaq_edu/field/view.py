@@ -28,7 +28,7 @@ _SHELL, _DARK, _LEG = (246, 246, 248), (44, 46, 52), (190, 194, 200)
 
 
 class _Canvas:
-    """A drawing in millimetres: x to the right, y upwards."""
+    """A drawing in millimeters: x to the right, y upwards."""
 
     def __init__(self, width: int, region: tuple[float, float, float, float]) -> None:
         left, right, bottom, top = region
@@ -44,21 +44,21 @@ class _Canvas:
         x, y = x - self.middle[0], y - self.middle[1]
         return middle_x + x * self.scale, middle_y - y * self.scale
 
-    def line(self, points: Sequence[tuple[float, float]], colour, width: float) -> None:
+    def line(self, points: Sequence[tuple[float, float]], color, width: float) -> None:
         pixels = max(1, round(width * self.scale))
-        self.draw.line([self.at(*p) for p in points], fill=colour, width=pixels, joint="curve")
+        self.draw.line([self.at(*p) for p in points], fill=color, width=pixels, joint="curve")
 
-    def polygon(self, points: Sequence[tuple[float, float]], colour) -> None:
-        self.draw.polygon([self.at(*p) for p in points], fill=colour)
+    def polygon(self, points: Sequence[tuple[float, float]], color) -> None:
+        self.draw.polygon([self.at(*p) for p in points], fill=color)
 
-    def disc(self, x: float, y: float, radius: float, colour, outline=None, width=0.0) -> None:
+    def disc(self, x: float, y: float, radius: float, color, outline=None, width=0.0) -> None:
         (left, top), (right, bottom) = (
             self.at(x - radius, y + radius),
             self.at(x + radius, y - radius),
         )
         self.draw.ellipse(
             (left, top, right, bottom),
-            fill=colour,
+            fill=color,
             outline=outline,
             width=max(1, round(width * self.scale)),
         )
@@ -125,13 +125,13 @@ def _draw_pitch(canvas: _Canvas) -> None:
     for x1, y1, x2, y2 in pitch.lines():
         canvas.line([(x1, y1), (x2, y2)], _LINE, pitch.LINE_WIDTH)
     canvas.disc(0, 0, pitch.CIRCLE_RADIUS, None, _LINE, pitch.LINE_WIDTH)
-    for x1, y1, x2, y2, height, colour in pitch.panels().tolist():
+    for x1, y1, x2, y2, height, color in pitch.panels().tolist():
         if height == pitch.GOAL_HEIGHT:
-            paint = tuple(int(c) for c in pitch.PALETTE[int(colour)])
+            paint = tuple(int(c) for c in pitch.PALETTE[int(color)])
             out = math.copysign(20, y1) if y1 == y2 else 0.0
             canvas.line([(x1, y1 + out), (x2, y2 + out)], paint, 40)
-    for px, py, radius, _, colour in pitch.posts().tolist():
-        canvas.disc(px, py, radius, tuple(int(c) for c in pitch.PALETTE[int(colour)]))
+    for px, py, radius, _, color in pitch.posts().tolist():
+        canvas.disc(px, py, radius, tuple(int(c) for c in pitch.PALETTE[int(color)]))
     border = [(-x, -y), (x, -y), (x, y), (-x, y), (-x, -y)]
     canvas.line(border, _BORDER, 40)
 
@@ -150,9 +150,9 @@ def _draw_robot(canvas: _Canvas, x: float, y: float, heading: float, pan: float)
     def place(ahead: float, left: float) -> tuple[float, float]:
         return x + ahead * c - left * s, y + ahead * s + left * c
 
-    def block(front: float, back: float, left: float, right: float, colour) -> None:
+    def block(front: float, back: float, left: float, right: float, color) -> None:
         corners = [(front, left), (front, right), (back, right), (back, left)]
-        canvas.polygon([place(*corner) for corner in corners], colour)
+        canvas.polygon([place(*corner) for corner in corners], color)
 
     half_length, half_width = pitch.ROBOT_LENGTH / 2, pitch.ROBOT_WIDTH / 2
     block(half_length - 20, -half_length - 12, half_width + 14, -half_width - 14, (0, 0, 0, 50))

@@ -29,10 +29,10 @@ class Legs:
     Parameters
     ----------
     slide : float
-        Sideways slip to the left per millimetre walked. The battery lies in the left flank, and
+        Sideways slip to the left per millimeter walked. The battery lies in the left flank, and
         the robot leans that way (thesis 5.1.3.1, figure 5.5).
     pull : float
-        Turn per millimetre walked (rad/mm): negative, for the robot turns to the right as it
+        Turn per millimeter walked (rad/mm): negative, for the robot turns to the right as it
         walks "straight".
     variation : float
         Standard deviation of a footstep's length, as a fraction of it: every footstep, and the
@@ -41,7 +41,7 @@ class Legs:
     Notes
     -----
     The thesis shows the drift in a picture and gives no number. The defaults bring the robot
-    about 60 mm to the left and .08 rad to the right over two metres: visible, and small beside
+    about 60 mm to the left and .08 rad to the right over two meters: visible, and small beside
     one turning footstep.
     """
 
@@ -91,9 +91,9 @@ class World:
     Attributes
     ----------
     pose : tuple of float
-        x, y (mm) and heading (rad) of the robot; the heading is zero towards the sky-blue goal.
+        x, y (mm) and heading (rad) of the robot; the heading is zero toward the sky-blue goal.
     ball : tuple of float
-        x, y (mm) of the ball's centre.
+        x, y (mm) of the ball's center.
     pan : float
         Where the head points (rad), from straight ahead to the left.
     time : float
@@ -287,7 +287,7 @@ class World:
 
     @property
     def ball(self) -> tuple[float, float]:
-        """x, y (mm) of the ball's centre."""
+        """x, y (mm) of the ball's center."""
         x, y = self._ball.position
         return x, y
 

@@ -8,12 +8,12 @@ import lazy_loader as _lazy
 __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
     submodules=[
-        "agent", "animation", "art", "automata", "belief", "diagram", "distance", "field",
+        "arkaq", "art", "automata", "belief", "distance", "drawing", "field",
         "gallery", "goal", "kalman", "learning", "mdp", "policy", "pomdp", "scenes",
-        "segmentation", "style", "trajectories",
+        "segmentation", "trajectories",
     ],
     submod_attrs={
-        "animation": [
+        "drawing.animation": [
             "MovingShot", "MovingWalk", "animate_shot", "animate_walk", "save_shot", "save_walk",
         ],
         "gallery": ["FIGURES", "draw"],

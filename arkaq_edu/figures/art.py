@@ -26,10 +26,10 @@ from matplotlib.patches import Circle, Rectangle
 from matplotlib.text import Text
 from numpy.typing import ArrayLike, NDArray
 
-from .. import _checks
-from ..art import match_norm
-from . import style
-from .diagram import Diagram, blank, box, frame, node, wire, words
+from arkaq_edu import _checks
+from arkaq_edu.art import match_norm
+from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.drawing.diagram import Diagram, blank, box, frame, node, wire, words
 
 if TYPE_CHECKING:
     import pandas as pd

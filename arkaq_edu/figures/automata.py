@@ -21,9 +21,9 @@ from matplotlib.axes import Axes
 from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 from matplotlib.text import Text
 
-from ..arkaq import GOAL_Q_LEARNING, GOAL_SEGMENTATION, Q_LEARNING, SEGMENTATION, Automaton
-from ..arkaq.automata import DONE
-from . import style
+from arkaq_edu.arkaq import GOAL_Q_LEARNING, GOAL_SEGMENTATION, Q_LEARNING, SEGMENTATION, Automaton
+from arkaq_edu.arkaq.automata import DONE
+from arkaq_edu.figures.drawing import style
 
 #: Where the states stand: chosen by hand so that no two arrows cross.
 SEGMENTATION_PLACES = {
@@ -200,8 +200,8 @@ def _arrow(
     )  # fmt: skip
 
 
-def _rim(of: tuple[float, float], towards: tuple[float, float]) -> tuple[float, float]:
+def _rim(of: tuple[float, float], toward: tuple[float, float]) -> tuple[float, float]:
     """Return where the straight line between two states leaves the first one's box."""
-    dx, dy = towards[0] - of[0], towards[1] - of[1]
+    dx, dy = toward[0] - of[0], toward[1] - of[1]
     reach = min(_WIDTH / 2 / abs(dx) if dx else math.inf, _HEIGHT / 2 / abs(dy) if dy else math.inf)
     return of[0] + reach * dx, of[1] + reach * dy

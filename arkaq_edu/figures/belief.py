@@ -24,11 +24,11 @@ from matplotlib.container import BarContainer
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike, NDArray
 
-from .. import _checks
-from ..pomdp import Calibration, belief_update, problem, successors
-from . import style
-from .diagram import Diagram, Place, blank, link, moment, wire, words
-from .pomdp import COLORS, short
+from arkaq_edu import _checks
+from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.drawing.diagram import Diagram, Place, blank, link, moment, wire, words
+from arkaq_edu.figures.pomdp import COLORS, short
+from arkaq_edu.pomdp import Calibration, belief_update, problem, successors
 
 #: What the thesis prints for the floors after a move down.
 PRINTED_FLOORS = (0.0, 0.33, 0.33, 0.33)

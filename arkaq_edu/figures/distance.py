@@ -22,8 +22,8 @@ from matplotlib.patches import Circle
 from matplotlib.quiver import Quiver
 from numpy.typing import ArrayLike, NDArray
 
-from ..art import ART2A, EuclideanART
-from . import style
+from arkaq_edu.art import ART2A, EuclideanART
+from arkaq_edu.figures.drawing import style
 
 
 class TurnPlot(NamedTuple):
@@ -40,7 +40,7 @@ class TurnPlot(NamedTuple):
 
 
 class MovePlot(NamedTuple):
-    """What `figure_4_2` drew: centres before and after, how far they reach, and the patterns."""
+    """What `figure_4_2` drew: centers before and after, how far they reach, and the patterns."""
 
     ax: Axes
     before: Line2D
@@ -60,7 +60,7 @@ def figure_4_1(
     learning_rate: float = 0.3,
     times: int = 3,
 ) -> TurnPlot:
-    """Draw figure 4.1, a template that turns towards a pattern presented several times.
+    """Draw figure 4.1, a template that turns toward a pattern presented several times.
 
     Parameters
     ----------
@@ -112,22 +112,22 @@ def figure_4_1(
 def figure_4_2(
     ax: Axes | None = None, *, vigilance: float = 0.4, learning_rate: float = 0.5
 ) -> MovePlot:
-    """Draw figure 4.2, a pattern that moves the nearest centre and one that founds its own.
+    """Draw figure 4.2, a pattern that moves the nearest center and one that founds its own.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
         Where to draw; fresh axes where it is None.
     vigilance : float > 0
-        Distance from which on a pattern founds a centre.
+        Distance from which on a pattern founds a center.
     learning_rate : float in (0, 1]
         Update factor eta.
 
     Returns
     -------
     MovePlot
-        ``ax``, ``before`` and ``after`` (the centres), ``reach`` (a circle of the vigilance around
-        each centre there was at first), ``patterns``.
+        ``ax``, ``before`` and ``after`` (the centers), ``reach`` (a circle of the vigilance around
+        each center there was at first), ``patterns``.
 
     References
     ----------

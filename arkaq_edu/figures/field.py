@@ -25,12 +25,12 @@ from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike, NDArray
 
-from .. import _checks
-from ..field import Camera, Legs, World, bird_view, pitch, random_place
-from ..field.camera import FIELD_OF_VIEW
-from ..field.supervisor import FARTHEST, START, Placement
-from ..field.view import EXTENT
-from . import style
+from arkaq_edu import _checks
+from arkaq_edu.field import Camera, Legs, World, bird_view, pitch, random_place
+from arkaq_edu.field.camera import FIELD_OF_VIEW
+from arkaq_edu.field.supervisor import FARTHEST, START, Placement
+from arkaq_edu.field.view import EXTENT
+from arkaq_edu.figures.drawing import style
 
 
 class Picture(NamedTuple):
@@ -136,7 +136,7 @@ def plot_field(
     trail: Sequence[tuple[float, float]] = (),
     sight: bool = False,
 ) -> Picture:
-    """Draw the field from above, with millimetres along its sides.
+    """Draw the field from above, with millimeters along its sides.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def plot_field(
     kick-off
     """
     ax = style.axes(
-        ax, xlabel="x, towards the blue goal (mm)", ylabel="y, to the left (mm)", title=title
+        ax, xlabel="x, toward the blue goal (mm)", ylabel="y, to the left (mm)", title=title
     )
     image = ax.imshow(bird_view(world, trail=trail, sight=sight), extent=EXTENT)
     ax.set(xticks=range(-3000, 3001, 1000), yticks=range(-2000, 2001, 1000))
@@ -178,7 +178,7 @@ def figure_5_3(ax: Axes | None = None, *, world: World | None = None) -> Picture
     ax : matplotlib.axes.Axes, optional
         Where to draw; fresh axes where it is None.
     world : World, optional
-        The field as it is now; by default the ball lies a good metre away, a little to the left.
+        The field as it is now; by default the ball lies a good meter away, a little to the left.
 
     Returns
     -------

@@ -14,8 +14,8 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from . import (
-    agent,
+from arkaq_edu.figures import (
+    arkaq,
     art,
     automata,
     belief,
@@ -33,7 +33,7 @@ from . import (
 )
 
 _ROOMS = (
-    agent,
+    arkaq,
     learning,
     mdp,
     art,

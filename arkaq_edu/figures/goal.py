@@ -10,7 +10,7 @@ Examples
 --------
 >>> from matplotlib.figure import Figure
 >>> figure_5_36(Figure().subplots(), patterns=[[0.0], [0.03], [0.5]])
-2 centres at vigilance 0.06, the thesis printed 13
+2 centers at vigilance 0.06, the thesis printed 13
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import StepPatch
 from numpy.typing import ArrayLike, NDArray
 
-from .. import _checks
-from ..arkaq import Arkaq, Learning, Sensing
-from ..art import EuclideanART
-from ..envs.score_goal import ACTIONS
-from . import style
-from .policy import MARKERS
+from arkaq_edu import _checks
+from arkaq_edu.arkaq import Arkaq, Sensing, TrainingSettings
+from arkaq_edu.art import EuclideanART
+from arkaq_edu.envs.score_goal import ACTIONS
+from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.policy import MARKERS
 
-#: The numbers of centres the thesis prints, by vigilance (figures 5.35 to 5.37).
+#: The numbers of centers the thesis prints, by vigilance (figures 5.35 to 5.37).
 THESIS_COUNTS = {0.075: 9, 0.06: 13, 0.05: 18}
 
 #: The shares of kicks that score, per cent, as the thesis says them of figure 5.40.
@@ -50,7 +50,7 @@ _STRIP = 0.3
 
 
 class LinePlot(NamedTuple):
-    """What `plot_line` drew: how often each orientation was seen, the cells, and the centres."""
+    """What `plot_line` drew: how often each orientation was seen, the cells, and the centers."""
 
     ax: Axes
     seen: StepPatch
@@ -59,7 +59,7 @@ class LinePlot(NamedTuple):
 
     def __repr__(self) -> str:
         """Return what the picture states."""
-        return self.ax.get_title(loc="left") or f"{len(self.cells.get_paths())} centres"
+        return self.ax.get_title(loc="left") or f"{len(self.cells.get_paths())} centers"
 
 
 class LinePolicyPlot(NamedTuple):
@@ -89,17 +89,17 @@ class ScoresPlot(NamedTuple):
 
 
 def line_cells(centers: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return centres from left to right (rad), and the ends of their cells.
+    """Return centers from left to right (rad), and the ends of their cells.
 
     Parameters
     ----------
     centers : array_like, shape (S, 1)
-        Centres as scaled orientations.
+        Centers as scaled orientations.
 
     Returns
     -------
     middles : array, shape (S,)
-        Orientations of the centres (rad), the leftmost, so the greatest, first.
+        Orientations of the centers (rad), the leftmost, so the greatest, first.
     ends : array, shape (S + 1,)
         Where the cells meet, and where the outer ones end: at .5 and -.5.
 
@@ -117,12 +117,12 @@ def line_cells(centers: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.floa
 def plot_line(
     centers: ArrayLike, patterns: ArrayLike, ax: Axes | None = None, *, title: str = ""
 ) -> LinePlot:
-    """Draw centres and their cells on a line, under how often each orientation was seen.
+    """Draw centers and their cells on a line, under how often each orientation was seen.
 
     Parameters
     ----------
     centers : array_like, shape (S, 1)
-        Centres as scaled orientations.
+        Centers as scaled orientations.
     patterns : array_like, shape (n, 1)
         The stream that founded them.
     ax : matplotlib.axes.Axes, optional
@@ -153,12 +153,12 @@ def plot_line(
 def plot_segmentation(
     vigilance: float, ax: Axes | None = None, *, patterns: ArrayLike | None = None
 ) -> LinePlot:
-    """Segment a stream of orientations and draw the centres, with the thesis's count and ours.
+    """Segment a stream of orientations and draw the centers, with the thesis's count and ours.
 
     Parameters
     ----------
     vigilance : float
-        Distance, between scaled orientations, from which on a pattern founds a centre.
+        Distance, between scaled orientations, from which on a pattern founds a center.
     ax : matplotlib.axes.Axes, optional
         Where to draw; fresh axes where it is None.
     patterns : array_like, shape (n, 1), optional
@@ -172,32 +172,32 @@ def plot_segmentation(
     --------
     >>> from matplotlib.figure import Figure
     >>> plot_segmentation(0.3, Figure().subplots(), patterns=[[0.0], [0.25], [1.0]])
-    2 centres at vigilance 0.3
+    2 centers at vigilance 0.3
     """
     if patterns is None:
-        from ..experiments import goal  # brings the whole field with it
+        from arkaq_edu.experiments import goal  # brings the whole field with it
 
         patterns = goal.patterns(goal.load_orientations())
-    rate = Learning.goal().learning_rate
+    rate = TrainingSettings.goal().learning_rate
     centers = EuclideanART(vigilance, rate).fit(patterns).cluster_centers_
     n, printed = len(centers), THESIS_COUNTS.get(vigilance)
     beside = "" if printed is None else f", the thesis printed {printed}"
-    title = f"{n} centre{'s' if n > 1 else ''} at vigilance {vigilance:g}{beside}"
+    title = f"{n} center{'s' if n > 1 else ''} at vigilance {vigilance:g}{beside}"
     return plot_line(centers, patterns, ax, title=title)
 
 
 def figure_5_35(ax: Axes | None = None, **options: Any) -> LinePlot:
-    """Draw figure 5.35, the centres at vigilance 0.075; see `plot_segmentation`."""
+    """Draw figure 5.35, the centers at vigilance 0.075; see `plot_segmentation`."""
     return plot_segmentation(0.075, ax, **options)
 
 
 def figure_5_36(ax: Axes | None = None, **options: Any) -> LinePlot:
-    """Draw figure 5.36, the centres at vigilance 0.06; see `plot_segmentation`."""
+    """Draw figure 5.36, the centers at vigilance 0.06; see `plot_segmentation`."""
     return plot_segmentation(0.06, ax, **options)
 
 
 def figure_5_37(ax: Axes | None = None, **options: Any) -> LinePlot:
-    """Draw figure 5.37, the centres at vigilance 0.05; see `plot_segmentation`."""
+    """Draw figure 5.37, the centers at vigilance 0.05; see `plot_segmentation`."""
     return plot_segmentation(0.05, ax, **options)
 
 
@@ -227,7 +227,7 @@ def figure_5_39(ax: Axes | None = None, *, goal_agent: Arkaq | None = None) -> L
     ['kick', 'turn left', 'turn right']
     """
     if goal_agent is None:
-        from ..experiments import goal
+        from arkaq_edu.experiments import goal
 
         goal_agent = goal.load_agent()
     if goal_agent.q is None or goal_agent.task != "goal":
@@ -278,7 +278,7 @@ def plot_scores(
         actions, ``means`` of the oracle; ``best``, what no policy can exceed but by luck;
         ``thesis``, hollow, near only.
     """
-    from ..experiments import goal
+    from arkaq_edu.experiments import goal
 
     table = goal.load_study() if study is None else study
     table = table[table.goal_distance == goal_distance]

@@ -25,9 +25,9 @@ from matplotlib.text import Annotation, Text
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
-from .. import _checks
-from ..kalman import KalmanFilter, KalmanTrace, chi_square_band
-from . import style
+from arkaq_edu import _checks
+from arkaq_edu.figures.drawing import style
+from arkaq_edu.kalman import KalmanFilter, KalmanTrace, chi_square_band
 
 # Marker, its size, and how far from its middle an arrow ends; all in points.
 _SHAPES = {"vector": ("o", 40, 21), "matrix": ("s", 32, 19), "noise": ("*", 54, 15),

@@ -24,17 +24,17 @@ from matplotlib.patches import Circle, FancyArrowPatch
 from matplotlib.text import Text
 from numpy.typing import ArrayLike, NDArray
 
-from .. import _checks
-from ..mdp import average_reward, delayed_rewards, discounted, finite_horizon
-from . import style
-from .diagram import Diagram, blank, box, frame, wire, words
+from arkaq_edu import _checks
+from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.drawing.diagram import Diagram, blank, box, frame, wire, words
+from arkaq_edu.mdp import average_reward, delayed_rewards, discounted, finite_horizon
 
 #: The chains of figure 2.2, from the top: how many steps earn nothing, and what each later one
 #: earns.
 CHAINS = {"upper": (2, 2.0), "middle": (5, 10.0), "lower": (6, 11.0)}
-#: A colour for each chain: to enter one is an action.
+#: A color for each chain: to enter one is an action.
 CHAIN_COLORS = dict(zip(CHAINS, list(style.ACTIONS.values())[:3], strict=True))
-#: The colours of lines that are compared, in their order.
+#: The colors of lines that are compared, in their order.
 SERIES = (
     style.QUIET, style.ACTIONS["left"], style.ACTIONS["right"], style.ACTIONS["forward"],
     style.OURS,

@@ -27,11 +27,11 @@ from matplotlib.path import Path
 from matplotlib.text import Text
 from numpy.typing import ArrayLike, NDArray
 
-from .. import _checks
-from ..mdp import MDP
-from ..mdp.grid import MOVES, WALL, Grid
-from . import style
-from .diagram import Diagram, Place, blank, link, moment, words
+from arkaq_edu import _checks
+from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.drawing.diagram import Diagram, Place, blank, link, moment, words
+from arkaq_edu.mdp import MDP
+from arkaq_edu.mdp.gridworld import MOVES, WALL, Grid
 
 # --- figure 2.3 -----------------------------------------------------------------------------------
 
@@ -237,7 +237,7 @@ def _circle(n: int) -> NDArray[np.float64]:
 
 
 def _choices(mdp: MDP, middle: NDArray[np.float64]) -> dict[tuple[int, int], NDArray[np.float64]]:
-    """Return a place for each choice: beside its state, towards where it leads, apart."""
+    """Return a place for each choice: beside its state, toward where it leads, apart."""
     spots = {}
     for s in np.flatnonzero(~mdp.ends).tolist():
         angles = []
@@ -434,7 +434,7 @@ def figure_4_3(ax: Axes | None = None) -> ProcedurePlot:
 
     References
     ----------
-    Thesis, figure 4.3; `arkaq_edu.mdp.control` says why it cannot run as printed.
+    Thesis, figure 4.3; `arkaq_edu.mdp.training` says why it cannot run as printed.
 
     Examples
     --------
@@ -460,7 +460,7 @@ def figure_4_4(ax: Axes | None = None) -> ProcedurePlot:
 
     References
     ----------
-    Thesis, figure 4.4; `arkaq_edu.mdp.control` says why it cannot run as printed.
+    Thesis, figure 4.4; `arkaq_edu.mdp.training` says why it cannot run as printed.
 
     Examples
     --------
@@ -609,7 +609,7 @@ def plot_grid(
 ) -> GridPlot:
     """Draw the values of a grid world as shades and numbers, and its best actions as arrows.
 
-    Walls are grey, holes black, the ball is orange. Where several actions are best, each has its
+    Walls are gray, holes black, the ball is orange. Where several actions are best, each has its
     arrow; where all are, there is none.
 
     Parameters
@@ -704,7 +704,7 @@ def plot_bands(
     Raises
     ------
     ValueError
-        If a shape does not fit, or there are more names than colours.
+        If a shape does not fit, or there are more names than colors.
 
     Examples
     --------

@@ -27,11 +27,11 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 from numpy.typing import ArrayLike
 
-from .. import _checks
-from ..arkaq import Arkaq
-from ..envs.ball_approach import ACTIONS
-from . import style
-from .segmentation import DISTANCE, ORIENTATION, THESIS_COUNTS, in_view, map_of
+from arkaq_edu import _checks
+from arkaq_edu.arkaq import Arkaq
+from arkaq_edu.envs.ball_approach import ACTIONS
+from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.segmentation import DISTANCE, ORIENTATION, THESIS_COUNTS, in_view, map_of
 
 _UP = Path([(-0.2, -1), (-0.2, 0), (-0.7, 0), (0, 1), (0.7, 0), (0.2, 0), (0.2, -1), (-0.2, -1)])
 #: An arrow for each action, which points where the action leads.
@@ -74,7 +74,7 @@ def plot_policy(
     Parameters
     ----------
     centers : array_like, shape (S, 2)
-        Centres of the states as scaled patterns (distance, orientation).
+        Centers of the states as scaled patterns (distance, orientation).
     actions : array_like of int, shape (S,)
         0 forward, 1 left, 2 right.
     ax : matplotlib.axes.Axes, optional
@@ -139,7 +139,7 @@ def figure_5_16(ax: Axes | None = None, *, agent: Arkaq | None = None) -> Policy
     >>> sorted(figure_5_16(Figure().subplots()).marks)
     ['forward', 'left', 'right']
     """
-    from ..experiments import load_agent  # brings the whole field with it
+    from arkaq_edu.experiments import load_agent  # brings the whole field with it
 
     agent = load_agent() if agent is None else agent
     if agent.q is None:

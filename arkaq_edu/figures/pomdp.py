@@ -28,8 +28,10 @@ from matplotlib.patches import FancyArrowPatch, Rectangle
 from matplotlib.text import Text
 from numpy.typing import ArrayLike, NDArray
 
-from .. import _checks
-from ..pomdp import (
+from arkaq_edu import _checks
+from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.drawing.diagram import Diagram, blank, wire, words
+from arkaq_edu.pomdp import (
     POMDP,
     Domination,
     PolicyTree,
@@ -40,13 +42,11 @@ from ..pomdp import (
     solve_pomdp,
     tree_value,
 )
-from ..pomdp.grid import CORNERS as TRIANGLE
-from . import style
-from .diagram import Diagram, blank, wire, words
+from arkaq_edu.pomdp.simplex import CORNERS as TRIANGLE
 
 Floats = NDArray[np.float64]
 
-#: The colour of each action of the course's problems.
+#: The color of each action of the course's problems.
 COLORS = {
     name: style.ACTIONS[like]
     for like, names in {
@@ -512,7 +512,7 @@ def _region(A: NDArray[np.floating], k: int) -> Floats:
 
 
 def paler(color: str, share: float) -> tuple[float, float, float]:
-    """Return a colour with a share of white in it.
+    """Return a color with a share of white in it.
 
     Examples
     --------
@@ -524,7 +524,7 @@ def paler(color: str, share: float) -> tuple[float, float, float]:
 
 
 def shaded(colors: Sequence[str], seen: Bowl) -> list[str]:
-    """Return the colour of each face, paler where it looks to the light: on the left, behind.
+    """Return the color of each face, paler where it looks to the light: on the left, behind.
 
     Examples
     --------
@@ -548,7 +548,7 @@ def figure_2_12(ax: Axes | None = None) -> ProjectionPlot:
     Returns
     -------
     ProjectionPlot
-        ``intervals`` "p1", "p2", ...: on the axis of beliefs, each in its action's colour.
+        ``intervals`` "p1", "p2", ...: on the axis of beliefs, each in its action's color.
 
     References
     ----------

@@ -83,7 +83,7 @@ def write_report(
     Examples
     --------
     >>> import tempfile
-    >>> table = pd.DataFrame([["centres", 137, 150, 147, 153, 20]],
+    >>> table = pd.DataFrame([["centers", 137, 150, 147, 153, 20]],
     ...                      columns=["quantity", "thesis", "mean", "low", "high", "seeds"])
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     page = write_report(folder, table, {}).read_text()

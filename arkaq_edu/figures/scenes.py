@@ -25,14 +25,14 @@ from matplotlib.text import Annotation
 from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 from numpy.typing import ArrayLike, NDArray
 
-from .. import _checks
-from ..field import Camera, GoalSupervisor, World, bird_view, motion, pitch
-from ..field.camera import FOCAL_LENGTH
-from ..field.view import EXTENT
-from ..field.world import LONGEST_FOOTSTEP
-from . import style
-from .diagram import Diagram, Place, blank, box, frame, wire, words
-from .field import Picture, plot_field
+from arkaq_edu import _checks
+from arkaq_edu.field import Camera, GoalSupervisor, World, bird_view, motion, pitch
+from arkaq_edu.field.camera import FOCAL_LENGTH
+from arkaq_edu.field.view import EXTENT
+from arkaq_edu.field.world import LONGEST_FOOTSTEP
+from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.drawing.diagram import Diagram, Place, blank, box, frame, wire, words
+from arkaq_edu.figures.field import Picture, plot_field
 
 #: The modules of figure 5.4, where they stand, and whether the thesis's experiments use them.
 MODULES: dict[str, tuple[Place, bool]] = {

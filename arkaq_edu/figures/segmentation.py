@@ -1,6 +1,6 @@
 """Figures 5.9 to 5.14: how an ART network cuts the robot's view into categories.
 
-A category is a centre; its cell is every ball position nearer to this centre than to any other.
+A category is a center; its cell is every ball position nearer to this center than to any other.
 Near is meant between scaled patterns, where distance and orientation both run from -1 to 1; in
 the picture's own units the cells are the same polygons, stretched. The templates of the angular
 network have unit norm, so that the nearest is the most aligned: their cells are sectors.
@@ -31,16 +31,16 @@ from matplotlib.patches import Rectangle
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import Voronoi
 
-from .. import _checks
-from ..arkaq import Learning, Sensing
-from ..art import ART2A, EuclideanART
-from . import style
+from arkaq_edu import _checks
+from arkaq_edu.arkaq import Sensing, TrainingSettings
+from arkaq_edu.art import ART2A, EuclideanART
+from arkaq_edu.figures.drawing import style
 
-#: The numbers of centres the thesis prints, by vigilance (figures 5.10 to 5.14).
+#: The numbers of centers the thesis prints, by vigilance (figures 5.10 to 5.14).
 THESIS_COUNTS = {0.15: 137, 0.1: 333, 0.075: 519, 0.05: 825, 0.025: 1933}
 
 #: The update factor eta with which the agent learns.
-LEARNING_RATE = Learning().learning_rate
+LEARNING_RATE = TrainingSettings().learning_rate
 
 #: The update factor with which the templates of figure 5.9 turn. Slow, as the authors of ART 2-A
 #: advise: a template that swings leaves directions behind it, where others are founded.
@@ -64,7 +64,7 @@ class CentersPlot(NamedTuple):
 
     def __repr__(self) -> str:
         """Return what the picture states, so that a notebook prints it under the picture."""
-        return self.ax.get_title(loc="left") or f"{self.n_centers} centres"
+        return self.ax.get_title(loc="left") or f"{self.n_centers} centers"
 
 
 def recorded_patterns() -> NDArray[np.float64]:
@@ -81,7 +81,7 @@ def recorded_patterns() -> NDArray[np.float64]:
     >>> patterns.shape[1], bool(abs(patterns).max() <= 1)
     (2, True)
     """
-    from ..experiments import streams  # brings the whole field with it
+    from arkaq_edu.experiments import streams  # brings the whole field with it
 
     return streams.patterns(streams.load_sightings())
 
@@ -121,10 +121,10 @@ def in_order(patterns: ArrayLike, order: str) -> NDArray[np.float64]:
 
 
 def coverage(network: ART2A | EuclideanART, patterns: ArrayLike) -> float:
-    """Return the share of patterns that a fitted network recognises.
+    """Return the share of patterns that a fitted network recognizes.
 
-    A pattern is recognised if it would found no category: its category is within the vigilance.
-    Even a pattern that was learned may be lost, because centres move on.
+    A pattern is recognized if it would found no category: its category is within the vigilance.
+    Even a pattern that was learned may be lost, because centers move on.
 
     Parameters
     ----------
@@ -151,13 +151,13 @@ def coverage(network: ART2A | EuclideanART, patterns: ArrayLike) -> float:
     own = network.cluster_centers_[network.predict(patterns)]
     if isinstance(network, ART2A):
         norms = np.linalg.norm(patterns, axis=1)
-        recognised = (own * patterns).sum(axis=1) > network.vigilance * norms
+        recognized = (own * patterns).sum(axis=1) > network.vigilance * norms
     else:
-        recognised = np.linalg.norm(patterns - own, axis=1) < network.vigilance
-    return float(recognised.mean())
+        recognized = np.linalg.norm(patterns - own, axis=1) < network.vigilance
+    return float(recognized.mean())
 
 
-def quantisation_error(places: ArrayLike, labels: ArrayLike) -> float:
+def quantization_error(places: ArrayLike, labels: ArrayLike) -> float:
     """Return how far places are, root mean square, from the mean place of their category.
 
     It is the error of the best guess of the place that can be made from the category alone.
@@ -176,7 +176,7 @@ def quantisation_error(places: ArrayLike, labels: ArrayLike) -> float:
 
     Examples
     --------
-    >>> quantisation_error([[100.0], [300.0], [1000.0], [1200.0]], [0, 0, 1, 1])
+    >>> quantization_error([[100.0], [300.0], [1000.0], [1200.0]], [0, 0, 1, 1])
     100.0
     """
     places = _checks.array("places", places, (None, None))
@@ -211,7 +211,7 @@ def in_view(patterns: ArrayLike) -> NDArray[np.float64]:
 def voronoi_cells(
     centers: ArrayLike,
 ) -> tuple[list[NDArray[np.float64]], NDArray[np.intp]]:
-    """Return each centre's cell, the points nearest to it, and which cells touch.
+    """Return each center's cell, the points nearest to it, and which cells touch.
 
     Inside the square [-1, 1] x [-1, 1] the cells are exact; outside they end somewhere.
 
@@ -225,7 +225,7 @@ def voronoi_cells(
     polygons : list of n arrays, shape (k, 2)
         The corners of each cell, in order around it.
     pairs : array of int, shape (m, 2)
-        Indices of centres whose cells share a border.
+        Indices of centers whose cells share a border.
 
     Examples
     --------
@@ -236,7 +236,7 @@ def voronoi_cells(
     centers = _checks.array("centers", centers, (None, 2))
     n = len(centers)
     # A ring of far points closes the outer cells. No point of the square is nearer to the ring
-    # than to a centre: across the square is 2.8, to the ring at least 10.
+    # than to a center: across the square is 2.8, to the ring at least 10.
     angles = np.arange(8) * np.pi / 4
     ring = 12 * np.column_stack([np.cos(angles), np.sin(angles)])
     diagram = Voronoi(np.vstack([centers, ring]))
@@ -246,17 +246,17 @@ def voronoi_cells(
 
 
 def six_colors(n: int, pairs: NDArray[np.intp]) -> list[int]:
-    """Colour the cells of a map with six colours so that no two neighbours share one.
+    """Color the cells of a map with six colors so that no two neighbors share one.
 
-    Some country of a map always has fewer than six neighbours. Take it away, colour the rest, and
-    put it back: one of six colours is free.
+    Some country of a map always has fewer than six neighbors. Take it away, color the rest, and
+    put it back: one of six colors is free.
 
     Parameters
     ----------
     n : int
         Number of cells.
     pairs : array of int, shape (m, 2)
-        Neighbours. The map must be flat, as cells in a plane are.
+        Neighbors. The map must be flat, as cells in a plane are.
 
     Returns
     -------
@@ -269,42 +269,42 @@ def six_colors(n: int, pairs: NDArray[np.intp]) -> list[int]:
     >>> six_colors(3, np.array([[0, 1], [1, 2]]))
     [0, 1, 2]
     """
-    neighbours: list[list[int]] = [[] for _ in range(n)]
+    neighbors: list[list[int]] = [[] for _ in range(n)]
     for i, j in pairs.tolist():
-        neighbours[i].append(j)
-        neighbours[j].append(i)
-    left_over = [len(others) for others in neighbours]
+        neighbors[i].append(j)
+        neighbors[j].append(i)
+    left_over = [len(others) for others in neighbors]
     ready = [i for i in range(n) if left_over[i] < 6]
     taken_away: list[int] = []
     while ready:
         i = ready.pop()
         taken_away.append(i)
-        for j in neighbours[i]:
+        for j in neighbors[i]:
             left_over[j] -= 1
             if left_over[j] == 5:
                 ready.append(j)
     colors = [-1] * n
     for i in reversed(taken_away):
-        used = {colors[j] for j in neighbours[i]}
-        # Starting at a colour of its own makes all six appear equally often.
+        used = {colors[j] for j in neighbors[i]}
+        # Starting at a color of its own makes all six appear equally often.
         colors[i] = next(c % 6 for c in range(i, i + 6) if c % 6 not in used)
     return colors
 
 
 def map_of(centers: ArrayLike) -> tuple[list[NDArray[np.float64]], list[int]]:
-    """Return the cells of centres as polygons of the robot's view, and a colour for each.
+    """Return the cells of centers as polygons of the robot's view, and a color for each.
 
     Parameters
     ----------
     centers : array_like, shape (n, 2)
-        Centres as scaled patterns (distance, orientation).
+        Centers as scaled patterns (distance, orientation).
 
     Returns
     -------
     polygons : list of n arrays, shape (k, 2)
         Corners: orientation in rad, distance in mm.
     colors : list of n int
-        Numbers from 0 to 5, different for neighbours.
+        Numbers from 0 to 5, different for neighbors.
 
     Examples
     --------
@@ -319,12 +319,12 @@ def map_of(centers: ArrayLike) -> tuple[list[NDArray[np.float64]], list[int]]:
 
 
 def plot_centers(centers: ArrayLike, ax: Axes | None = None, *, title: str = "") -> CentersPlot:
-    """Draw centres and their cells in the robot's view.
+    """Draw centers and their cells in the robot's view.
 
     Parameters
     ----------
     centers : array_like, shape (n, 2)
-        Centres as scaled patterns (distance, orientation).
+        Centers as scaled patterns (distance, orientation).
     ax : matplotlib.axes.Axes, optional
         Where to draw; fresh axes where it is None.
     title : str
@@ -423,27 +423,27 @@ def figure_5_9(
 
 
 def figure_5_10(ax: Axes | None = None, **options: Any) -> CentersPlot:
-    """Draw figure 5.10, the centres at vigilance 0.15; see `plot_segmentation`."""
+    """Draw figure 5.10, the centers at vigilance 0.15; see `plot_segmentation`."""
     return plot_segmentation(0.15, ax, **options)
 
 
 def figure_5_11(ax: Axes | None = None, **options: Any) -> CentersPlot:
-    """Draw figure 5.11, the centres at vigilance 0.1; see `plot_segmentation`."""
+    """Draw figure 5.11, the centers at vigilance 0.1; see `plot_segmentation`."""
     return plot_segmentation(0.1, ax, **options)
 
 
 def figure_5_12(ax: Axes | None = None, **options: Any) -> CentersPlot:
-    """Draw figure 5.12, the centres at vigilance 0.075; see `plot_segmentation`."""
+    """Draw figure 5.12, the centers at vigilance 0.075; see `plot_segmentation`."""
     return plot_segmentation(0.075, ax, **options)
 
 
 def figure_5_13(ax: Axes | None = None, **options: Any) -> CentersPlot:
-    """Draw figure 5.13, the centres at vigilance 0.05; see `plot_segmentation`."""
+    """Draw figure 5.13, the centers at vigilance 0.05; see `plot_segmentation`."""
     return plot_segmentation(0.05, ax, **options)
 
 
 def figure_5_14(ax: Axes | None = None, **options: Any) -> CentersPlot:
-    """Draw figure 5.14, the centres at vigilance 0.025; see `plot_segmentation`."""
+    """Draw figure 5.14, the centers at vigilance 0.025; see `plot_segmentation`."""
     return plot_segmentation(0.025, ax, **options)
 
 
@@ -454,12 +454,12 @@ def plot_segmentation(
     patterns: ArrayLike | None = None,
     learning_rate: float | str = LEARNING_RATE,
 ) -> CentersPlot:
-    """Segment a stream of patterns and draw the centres, with the thesis's count and ours.
+    """Segment a stream of patterns and draw the centers, with the thesis's count and ours.
 
     Parameters
     ----------
     vigilance : float
-        Distance, between scaled patterns, from which on a pattern founds a centre.
+        Distance, between scaled patterns, from which on a pattern founds a center.
     ax : matplotlib.axes.Axes, optional
         Where to draw; fresh axes where it is None.
     patterns : array_like, shape (n, 2), optional

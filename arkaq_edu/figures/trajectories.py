@@ -23,15 +23,15 @@ from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
-from .. import _checks
-from ..arkaq import Arkaq
-from ..envs.ball_approach import ACTIONS
-from ..experiments import STARTS, Walk, load_agent, walk
-from ..field import World
-from ..field.supervisor import CLOSE_ENOUGH, STRAIGHT_ENOUGH
-from . import style
-from .field import plot_bodies, plot_field
-from .policy import MARKERS
+from arkaq_edu import _checks
+from arkaq_edu.arkaq import Arkaq
+from arkaq_edu.envs.ball_approach import ACTIONS
+from arkaq_edu.experiments import STARTS, Walk, load_agent, walk
+from arkaq_edu.field import World
+from arkaq_edu.field.supervisor import CLOSE_ENOUGH, STRAIGHT_ENOUGH
+from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.field import plot_bodies, plot_field
+from arkaq_edu.figures.policy import MARKERS
 
 
 class ViewPlot(NamedTuple):

@@ -7,7 +7,7 @@ The thesis's section 2.5, eq 2.49 to 2.59; its use on the ball is section 5.2.
 - `models`: `constant_velocity`;
 - `consistency`: `nees` and `chi_square_band`, whether a filter knows how wrong it is;
 - `noise`: `fit_noise`, Q and R from a recorded track;
-- `_kernels`: the loops, compiled at first use, that all of them run.
+- `compiled`: the loops, compiled at first use, that all of them run.
 """
 
 from arkaq_edu.kalman.batch import kalman_batch

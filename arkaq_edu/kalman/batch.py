@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu._checks import array
-from arkaq_edu.kalman import _kernels
+from arkaq_edu.kalman import compiled
 from arkaq_edu.kalman.filter import KalmanFilter
 
 
@@ -62,5 +62,5 @@ def kalman_batch(
     A, H, x0 = np.array(kf.A), np.array(kf.H), np.array(kf.x0)
     for members in groups.values():
         gains = kf.filter(Z[members[0]]).K
-        _kernels.follow(A, H, x0, gains, Z, np.array(members), x)
+        compiled.follow(A, H, x0, gains, Z, np.array(members), x)
     return x

@@ -1,7 +1,7 @@
 """Does a filter know how wrong it is? Its errors, measured by its own covariances, must be right.
 
-The NIS (normalised innovation squared) of a sighting is part of `KalmanTrace`; the NEES
-(normalised estimation error squared) needs the truth. In a filter whose A, H, Q and R are right
+The NIS (normalized innovation squared) of a sighting is part of `KalmanTrace`; the NEES
+(normalized estimation error squared) needs the truth. In a filter whose A, H, Q and R are right
 both are chi-square distributed.
 """
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu._checks import array, integer, number
-from arkaq_edu.kalman import _kernels
+from arkaq_edu.kalman import compiled
 
 
 def chi_square_quantile(probability: float, dof: float) -> float:
@@ -106,5 +106,5 @@ def nees(truth: ArrayLike, x: ArrayLike, P: ArrayLike) -> NDArray[np.float64]:
     errors = np.ascontiguousarray(array("truth", truth, (T, n)) - estimates)
     covariances = np.array(array("P", P, (T, n, n)), order="C")
     norms = np.empty(T)
-    _kernels.squared_norms(np.zeros((len(_kernels.PLANES), n, n)), errors, covariances, norms)
+    compiled.squared_norms(np.zeros((len(compiled.PLANES), n, n)), errors, covariances, norms)
     return norms

@@ -9,20 +9,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu._checks import array, covariance, number
-from arkaq_edu.kalman import _kernels
+from arkaq_edu.kalman import compiled
 from arkaq_edu.kalman.consistency import chi_square_band, chi_square_quantile
 
 Array = NDArray[np.float64]
 
 # Which plane of the memory a matrix lives in, and its shape.
 _PLANES = {
-    "A": (_kernels.A, "nn"),
-    "Q": (_kernels.Q, "nn"),
-    "P": (_kernels.P, "nn"),
-    "H": (_kernels.H, "mn"),
-    "R": (_kernels.R, "mm"),
-    "K": (_kernels.K, "nm"),
-    "S": (_kernels.S, "mm"),
+    "A": (compiled.A, "nn"),
+    "Q": (compiled.Q, "nn"),
+    "P": (compiled.P, "nn"),
+    "H": (compiled.H, "mn"),
+    "R": (compiled.R, "mm"),
+    "K": (compiled.K, "nm"),
+    "S": (compiled.S, "mm"),
 }
 _NOT_A_SIGHTING = (-1.0, 0.0, False)
 
@@ -44,7 +44,7 @@ class KalmanTrace:
     K : ndarray, shape (T, n, m)
         Gain as it was used: a missing entry has a column of zeros.
     nis : ndarray, shape (T,)
-        Normalised innovation squared, innovation' S^-1 innovation; NaN for a missing sighting.
+        Normalized innovation squared, innovation' S^-1 innovation; NaN for a missing sighting.
     accepted : ndarray of bool, shape (T,)
         Whether the row's sighting was used: False when it was missing or failed the gate.
     log_likelihood : float
@@ -251,7 +251,7 @@ class KalmanFilter:
         n = len(array("A", A, (None, None)))
         A = array("A", A, (n, n))
         m = len(array("H", H, (None, n)))
-        self._memory = np.zeros((len(_kernels.PLANES), max(n, m), max(n, m)))
+        self._memory = np.zeros((len(compiled.PLANES), max(n, m), max(n, m)))
         self._x, self._innovation, self._no_push = np.zeros(n), np.zeros(m), np.zeros(n)
         self._z_shape = (m,)
         self._own("A")[:], self._own("H")[:] = A, H
@@ -334,7 +334,7 @@ class KalmanFilter:
         array([1350.])
         """
         push = self._no_push if u is None else self._pushes("u", u, ())
-        _kernels.predict(self._memory, push, self._x)
+        compiled.predict(self._memory, push, self._x)
         return self._x.copy()
 
     def update(self, z: ArrayLike, R: ArrayLike | None = None) -> Array:
@@ -375,7 +375,7 @@ class KalmanFilter:
         sighting = _numbers(z)
         scores = _NOT_A_SIGHTING
         if sighting.shape == self._z_shape:
-            scores = _kernels.update(self._memory, self._gates, sighting, self._x, self._innovation)
+            scores = compiled.update(self._memory, self._gates, sighting, self._x, self._innovation)
         if scores[0] == -1.0:
             array("z", z, self._z_shape, allow_nan=True)
         self.nis, self.log_likelihood, self.accepted = scores
@@ -432,8 +432,8 @@ class KalmanFilter:
         rows = {name: np.empty((T, *shape)) for name, shape in shapes.items()}
         accepted = np.empty(T, np.bool_)
         memory = self._memory.copy()
-        memory[_kernels.P, :n, :n] = self._P0
-        log_likelihood = _kernels.track(
+        memory[compiled.P, :n, :n] = self._P0
+        log_likelihood = compiled.track(
             memory, noise, pushes, self._gates, self._x0.copy(), Z, *rows.values(), accepted
         )
         return KalmanTrace(**rows, accepted=accepted, log_likelihood=log_likelihood)
@@ -475,9 +475,9 @@ class KalmanFilter:
         """
         n = self._x.size
         x, P = np.array(array("trace.x", trace.x, (None, n))), trace.P.copy()
-        memory = np.zeros((len(_kernels.PLANES), n, n))
-        memory[_kernels.H], memory[_kernels.R] = self._own("A"), self._own("Q")
-        _kernels.smooth(memory, x, P, trace.x_prior)
+        memory = np.zeros((len(compiled.PLANES), n, n))
+        memory[compiled.H], memory[compiled.R] = self._own("A"), self._own("Q")
+        compiled.smooth(memory, x, P, trace.x_prior)
         return x, P
 
     def _own(self, name: str) -> Array:
@@ -499,7 +499,7 @@ class KalmanFilter:
         """Return R as a covariance, checked by a quick look where that is enough."""
         m = self._innovation.size
         own = _numbers(R)
-        quick = own.shape == (m, m) and _kernels.is_covariance(own)
+        quick = own.shape == (m, m) and compiled.is_covariance(own)
         return own if quick else covariance("R", R, m)
 
     def _pushes(self, name: str, u: ArrayLike, rows: tuple[int, ...]) -> Array:

@@ -11,9 +11,7 @@ the segmentation of the world is).
 """
 
 from arkaq_edu.mdp.bandits import UCB, Bandit, Boltzmann, EpsilonGreedy, Play, Random, play
-from arkaq_edu.mdp.choice import Exponential, Linear, Power, argmax_shared, softmax
-from arkaq_edu.mdp.control import Held, Learning, exploit, explore, hold, practise
-from arkaq_edu.mdp.grid import Grid, grid_world
+from arkaq_edu.mdp.gridworld import Grid, grid_world
 from arkaq_edu.mdp.model import MDP
 from arkaq_edu.mdp.optimality import average_reward, delayed_rewards, discounted
 from arkaq_edu.mdp.performance import quality_of_convergence, regret, speed_of_convergence
@@ -29,6 +27,8 @@ from arkaq_edu.mdp.planning import (
 )
 from arkaq_edu.mdp.prediction import Episode, discounted_returns, monte_carlo, simulate, td0
 from arkaq_edu.mdp.q_learning import QLearner
+from arkaq_edu.mdp.schedules import Exponential, Linear, Power, argmax_shared, softmax
+from arkaq_edu.mdp.training import Held, TrainingRun, exploit, explore, hold, train
 
 __all__ = [
     "MDP",
@@ -40,12 +40,12 @@ __all__ = [
     "Exponential",
     "Grid",
     "Held",
-    "Learning",
     "Linear",
     "Play",
     "Power",
     "QLearner",
     "Random",
+    "TrainingRun",
     "argmax_shared",
     "average_reward",
     "best_actions",
@@ -64,12 +64,12 @@ __all__ = [
     "policy_evaluation",
     "policy_iteration",
     "policy_model",
-    "practise",
     "quality_of_convergence",
     "regret",
     "simulate",
     "softmax",
     "speed_of_convergence",
     "td0",
+    "train",
     "value_iteration",
 ]

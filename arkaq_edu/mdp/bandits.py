@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu._checks import array, integer, number
 from arkaq_edu.mdp._indices import indices
-from arkaq_edu.mdp.choice import Schedule, argmax_shared, softmax, value_at
+from arkaq_edu.mdp.schedules import Schedule, argmax_shared, softmax, value_at
 
 
 class Bandit:

@@ -98,7 +98,7 @@ class MDP:
         return f"MDP({self.n_states} states, {self.n_actions} actions, gamma={self.gamma:g})"
 
     def action_values(self, V: ArrayLike) -> NDArray[np.float64]:
-        """Return R(s, a) + gamma sum_t T(s, a, t) V(t), what is maximised in equation 2.8.
+        """Return R(s, a) + gamma sum_t T(s, a, t) V(t), what is maximized in equation 2.8.
 
         Parameters
         ----------

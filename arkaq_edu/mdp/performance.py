@@ -59,7 +59,7 @@ def quality_of_convergence(
     Returns
     -------
     ndarray, shape (...)
-        1 for optimal behaviour, 0 for the baseline.
+        1 for optimal behavior, 0 for the baseline.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """Learn what a policy earns from what happened under it: Monte Carlo and temporal differences.
 
-Each is a backup of `QLearner` with a single action, since there is nothing to maximise over:
-Monte Carlo moves V(s_t) towards the whole return that followed it, TD(0) towards one reward and
+Each is a backup of `QLearner` with a single action, since there is nothing to maximize over:
+Monte Carlo moves V(s_t) toward the whole return that followed it, TD(0) toward one reward and
 the value of the state after it.
 """
 

@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu._checks import array, integer, number
 from arkaq_edu.mdp._indices import indices
-from arkaq_edu.mdp.choice import softmax
-from arkaq_edu.mdp.kernels import (
+from arkaq_edu.mdp.compiled import (
     ONE_OVER_VISITS,
     PAIR,
     backup,
@@ -20,6 +19,7 @@ from arkaq_edu.mdp.kernels import (
     draw_greedy,
     replay,
 )
+from arkaq_edu.mdp.schedules import softmax
 
 
 class _Typed:
@@ -289,7 +289,7 @@ class QLearner:
             The state.
         temperature : float
             T > 0, in the unit of the rewards. It is no probability (thesis, chapter 3): as it
-            falls to 0 the best actions share everything; towards infinity all are alike.
+            falls to 0 the best actions share everything; toward infinity all are alike.
 
         Returns
         -------

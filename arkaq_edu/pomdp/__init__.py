@@ -23,12 +23,12 @@ from arkaq_edu.pomdp.belief import (
     predict,
     successors,
 )
-from arkaq_edu.pomdp.bounds import PointBased, UpperBound, solve_point_based
 from arkaq_edu.pomdp.files import PomdpFormatError, problem, read_pomdp, write_pomdp
 from arkaq_edu.pomdp.graph import PolicyGraph
-from arkaq_edu.pomdp.grid import from_triangle, simplex_grid, to_triangle
 from arkaq_edu.pomdp.model import POMDP
+from arkaq_edu.pomdp.point_based import PointBased, UpperBound, solve_point_based
 from arkaq_edu.pomdp.pruning import Domination, dominated, prune
+from arkaq_edu.pomdp.simplex import from_triangle, simplex_grid, to_triangle
 from arkaq_edu.pomdp.solve import bellman_error, solve_pomdp
 from arkaq_edu.pomdp.trees import PolicyTree, all_trees, tree_value
 from arkaq_edu.pomdp.value import ValueFunction

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arkaq_edu._paths import course_folder, write_whole
-from arkaq_edu.pomdp._cassandra import (
+from arkaq_edu.pomdp.cassandra import (
     MOST_BYTES,
     PREAMBLE,
     RESERVED,

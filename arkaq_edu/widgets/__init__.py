@@ -4,16 +4,16 @@ Every explorer is an `Explorer`: plain controls, a plain function from their val
 and one canvas that draws any scene.
 """
 
-from .belief import belief_explorer
-from .explorer import Buttons, CanvasView, Drag, Explorer
-from .kalman import kalman_explorer
-from .learning import bandit_explorer, horizon_explorer
-from .panel import control_panel
-from .planning import planning_explorer, q_learning_explorer
-from .pomdp import bowl_explorer, value_explorer
-from .resonance import letters_explorer, resonance_explorer
-from .scoring import scoring_explorer
-from .vigilance import vigilance_explorer
+from arkaq_edu.widgets.art import letters_explorer, resonance_explorer
+from arkaq_edu.widgets.belief import belief_explorer
+from arkaq_edu.widgets.explorer import Buttons, CanvasView, Drag, Explorer
+from arkaq_edu.widgets.field import control_panel
+from arkaq_edu.widgets.goal import scoring_explorer
+from arkaq_edu.widgets.kalman import kalman_explorer
+from arkaq_edu.widgets.learning import bandit_explorer, horizon_explorer
+from arkaq_edu.widgets.mdp import planning_explorer, q_learning_explorer
+from arkaq_edu.widgets.pomdp import bowl_explorer, value_explorer
+from arkaq_edu.widgets.segmentation import vigilance_explorer
 
 __all__ = [
     "Buttons",

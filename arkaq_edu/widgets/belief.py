@@ -11,12 +11,12 @@ import numpy as np
 import traitlets
 from numpy.typing import NDArray
 
-from ..figures import style
-from ..figures.pomdp import COLORS, short
-from ..pomdp import POMDP, belief_update, predict, problem, successors
-from ..pomdp.grid import CORNERS
-from .explorer import Explorer
-from .scene import Cells, Layer, Line, Panel, Points, Scene, Text
+from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.pomdp import COLORS, short
+from arkaq_edu.pomdp import POMDP, belief_update, predict, problem, successors
+from arkaq_edu.pomdp.simplex import CORNERS
+from arkaq_edu.widgets.explorer import Explorer
+from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Text
 
 #: The problems of the menu, and the press that leaves the observation to chance.
 PROBLEMS = ("corridor", "floors", "tiger", "ball_side", "three_places")

@@ -26,7 +26,7 @@ const LAYERS = {
     ctx.clip();
     ctx.strokeStyle = "white";
     ctx.lineWidth = layer.border / 0.75;
-    // A colour's borders before the next colour: so what is drawn later can cover them.
+    // A color's borders before the next color: so what is drawn later can cover them.
     paths.forEach((path, color) => {
       ctx.fillStyle = layer.palette[color];
       ctx.fill(path);

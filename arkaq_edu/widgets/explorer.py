@@ -13,7 +13,7 @@ import numpy as np
 import traitlets
 from numpy.typing import NDArray
 
-from .scene import PNG_WIDTH, Scene
+from arkaq_edu.widgets.scene import PNG_WIDTH, Scene
 
 
 def wide(label: str = "9em") -> dict[str, Any]:

@@ -9,12 +9,12 @@ import ipywidgets
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _checks
-from ..figures import style
-from ..figures.kalman import running_nis
-from ..kalman import KalmanFilter, KalmanTrace
-from .explorer import Explorer, wide
-from .scene import Layer, Line, Panel, Points, Scene, Text, between
+from arkaq_edu import _checks
+from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.kalman import running_nis
+from arkaq_edu.kalman import KalmanFilter, KalmanTrace
+from arkaq_edu.widgets.explorer import Explorer, wide
+from arkaq_edu.widgets.scene import Layer, Line, Panel, Points, Scene, Text, between
 
 START, STEP = 3400.0, -100.0  # where the ball is at first, and what a footstep does to it: mm
 #: Standard deviations of the simulated world, in mm: its start, a footstep, a sighting.

@@ -11,10 +11,10 @@ import ipywidgets
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _checks
-from ..figures import style
-from ..figures.learning import CHAIN_COLORS, CHAINS, SERIES, best_chains, earnings
-from ..mdp import (
+from arkaq_edu import _checks
+from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.learning import CHAIN_COLORS, CHAINS, SERIES, best_chains, earnings
+from arkaq_edu.mdp import (
     UCB,
     Bandit,
     Boltzmann,
@@ -26,9 +26,9 @@ from ..mdp import (
     play,
     regret,
 )
-from ..mdp.bandits import Strategy
-from .explorer import Buttons, Explorer, wide
-from .scene import Cells, Layer, Line, Panel, Points, Scene, Text, between
+from arkaq_edu.mdp.bandits import Strategy
+from arkaq_edu.widgets.explorer import Buttons, Explorer, wide
+from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Text, between
 
 LONGEST = 30  # steps: where the slider of the horizon ends
 GAMMAS = tuple(step / 100 for step in range(100))  # the stops of the slider of gamma
@@ -171,7 +171,7 @@ def _model(
 def _strip(
     x: NDArray[Any], best: NDArray[np.bool_], within: tuple[float, float, float, float]
 ) -> Cells:
-    """Return the strip at the foot: the colour of the chain that is chosen, grey for a tie."""
+    """Return the strip at the foot: the color of the chain that is chosen, gray for a tie."""
     edges = np.concatenate([x[:1], (x[1:] + x[:-1]) / 2, x[-1:]]).astype(float)
     pieces, colors, start = [], [], 0
     for chosen, run in groupby(map(tuple, best)):

@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib.colors import to_hex
 from numpy.typing import NDArray
 
-from ..figures import style
-from ..figures.pomdp import (
+from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.pomdp import (
     COLORS,
     CORNERS,
     bowl,
@@ -21,9 +21,9 @@ from ..figures.pomdp import (
     surface_line,
     upper_surface,
 )
-from ..pomdp import PolicyTree, ValueFunction, problem
-from .explorer import Drag, Explorer, wide
-from .scene import Cells, Layer, Line, Panel, Points, Scene, Text
+from arkaq_edu.pomdp import PolicyTree, ValueFunction, problem
+from arkaq_edu.widgets.explorer import Drag, Explorer, wide
+from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Text
 
 Floats = NDArray[np.float64]
 
@@ -299,5 +299,5 @@ def _edges(polygons: list[Floats], colors: list[str]) -> list[Layer]:
 def _cells(
     polygons: list[Floats], colors: list[str], window: tuple[float, float, float, float]
 ) -> Cells:
-    """Return polygons of a colour each, that are drawn in their order."""
+    """Return polygons of a color each, that are drawn in their order."""
     return Cells(polygons, range(len(polygons)), window, colors, border=0.7)

@@ -28,14 +28,14 @@ from matplotlib.ticker import FixedLocator, MaxNLocator, NullLocator
 from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
-from ..figures import style
+from arkaq_edu.figures.drawing import style
 
 PNG_WIDTH = 760  # what a stored picture takes of the page, in pixels of the page
 
 
 @dataclass(frozen=True)
 class Cells:
-    """Polygons, each filled with a colour of `palette`, seen through a window of the panel.
+    """Polygons, each filled with a color of `palette`, seen through a window of the panel.
 
     `within` is that window: left, right, bottom, top, in the units of the axes. `border` is the
     width of the white lines between them, in points; by default it goes with their number.
@@ -54,7 +54,7 @@ class Cells:
         return {"palette": list(self.palette), "within": self.within, "border": border}
 
     def numbers(self) -> NDArray[np.float32]:
-        """Return how many polygons, their sizes, their colours, their corners."""
+        """Return how many polygons, their sizes, their colors, their corners."""
         sizes = [len(polygon) for polygon in self.polygons]
         corners = np.concatenate([np.ravel(polygon) for polygon in self.polygons])
         return np.concatenate([[len(sizes)], sizes, self.colors, corners]).astype(np.float32)
@@ -148,10 +148,10 @@ class Text:
 
 @dataclass(frozen=True)
 class Picture:
-    """Coloured pixels, shape (rows, columns, 3), the first row on top, on a window of the panel.
+    """Colored pixels, shape (rows, columns, 3), the first row on top, on a window of the panel.
 
     `within` is that window: left, right, bottom, top, in the units of the axes. Without `smooth`
-    every pixel stays a square of one colour, however large it is drawn.
+    every pixel stays a square of one color, however large it is drawn.
     """
 
     kind: ClassVar[str] = "picture"
@@ -278,7 +278,7 @@ class Scene:
         canvas.draw()
         picture = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
         file = io.BytesIO()
-        # A quarter of the bytes, and no eye sees it: these pictures have few colours.
+        # A quarter of the bytes, and no eye sees it: these pictures have few colors.
         picture.quantize(128, dither=Image.Dither.NONE).save(file, "PNG", optimize=True)
         return file.getvalue()
 

@@ -1,0 +1,147 @@
+"""Figures 3.1 and 3.2: the ARKAQ agent in two layers, and in detail.
+
+References
+----------
+Thesis, chapter 3 and figures 3.1 and 3.2.
+
+Examples
+--------
+>>> from matplotlib.figure import Figure
+>>> figure_3_1(Figure().subplots())
+ARKAQ: one layer makes states of what is seen, the other decides in them
+"""
+
+from __future__ import annotations
+
+from matplotlib.axes import Axes
+
+from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.drawing.diagram import Diagram, blank, box, frame, wire, words
+
+
+def figure_3_1(ax: Axes | None = None) -> Diagram:
+    """Draw figure 3.1, the two layers of ARKAQ.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+
+    Returns
+    -------
+    Diagram
+        ``ax``, ``parts`` and ``wires``.
+
+    Notes
+    -----
+    The thesis's network is called ART2 there; the one that its agent runs is the Euclidean one.
+
+    References
+    ----------
+    Thesis, chapter 3, figure 3.1.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> sorted(figure_3_1(Figure().subplots()).parts)
+    ['ART', 'Kalman', 'Q', 'world']
+    """
+    title = "ARKAQ: one layer makes states of what is seen, the other decides in them"
+    ax = blank(ax, title, (-0.7, 9.4), (-0.6, 4.4))
+    frame(ax, (2.3, 2.35), 6.9, 1.8)
+    frame(ax, (2.3, 0.2), 6.9, 1.5)
+    parts = {
+        "world": box(ax, (0.2, 2.0), "world", width=1.4, height=1.2),
+        "Kalman": box(ax, (3.9, 3.05), "Kalman filter", width=1.7),
+        "ART": box(ax, (7.4, 3.05), "ART network", width=1.7),
+        "Q": box(ax, (7.4, 0.95), "Q-learning", width=1.7),
+    }
+    wires = {
+        ("world", "Kalman"): wire(ax, (0.2, 2.6), (0.2, 3.05), (3.05, 3.05)),
+        ("Kalman", "ART"): wire(ax, (4.75, 3.05), (6.55, 3.05)),
+        ("ART", "Q"): wire(ax, (7.4, 2.7), (7.4, 1.3)),
+        ("Q", "world"): wire(ax, (6.55, 0.95), (0.2, 0.95), (0.2, 1.4)),
+        ("world", "Q"): wire(ax, (-0.2, 1.4), (-0.2, -0.3), (7.4, -0.3), (7.4, 0.6)),
+    }
+    for place, text in (
+        ((1.45, 3.05), "sighting"),
+        ((5.65, 3.05), "estimate"),
+        ((7.4, 2.0), "state"),
+        ((1.45, 0.95), "action"),
+        ((4.0, -0.3), "reward"),
+    ):
+        words(ax, place, text)
+    words(ax, (2.5, 3.85), "world model generator", "left", style.QUIET)
+    words(ax, (2.5, 1.4), "policy generator", "left", style.QUIET)
+    return Diagram(ax, parts, wires)
+
+
+def figure_3_2(ax: Axes | None = None) -> Diagram:
+    """Draw figure 3.2, ARKAQ in detail: what goes from part to part.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; fresh axes where it is None.
+
+    Returns
+    -------
+    Diagram
+        ``ax``, ``parts`` and ``wires``.
+
+    References
+    ----------
+    Thesis, chapter 3, figure 3.2; equations 2.12 (the table), 2.55-2.59 (the filter), 3.2 (the
+    choice) and 4.4-4.6 (the network). The wire of the action back to the filter, its B u, is the
+    course's own.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> plot = figure_3_2(Figure().subplots())
+    >>> [end for start, end in plot.wires if start == "choose"]
+    ['world', 'predict', 'table']
+    """
+    title = "ARKAQ in detail: pixels become a sighting, an estimate, a state, values, an action"
+    ax = blank(ax, title, (-0.7, 11.2), (-1.4, 4.8))
+    frame(ax, (1.7, 2.1), 9.3, 2.5)
+    frame(ax, (1.7, -0.55), 9.3, 2.05)
+    parts = {
+        "world": box(ax, (0.1, 1.75), "world", width=1.2, height=1.0),
+        "predict": box(ax, (2.7, 3.7), "predict", width=1.3),
+        "correct": box(ax, (4.9, 3.0), "correct", width=1.3),
+        "scale": box(ax, (6.9, 3.0), "scale", width=1.2),
+        "network": box(ax, (9.4, 3.0), "nearest\ncategory", width=1.5, height=0.9),
+        "table": box(ax, (9.4, 0.4), "table\n$Q(s, a)$", width=1.5, height=0.9),
+        "choose": box(ax, (5.6, 0.4), "choose $a$", width=1.4),
+    }
+    wires = {
+        ("world", "correct"): wire(ax, (0.1, 2.25), (0.1, 2.75), (4.25, 2.75)),
+        ("predict", "correct"): wire(ax, (3.35, 3.7), (4.9, 3.7), (4.9, 3.35)),
+        ("correct", "scale"): wire(ax, (5.55, 3.0), (6.3, 3.0)),
+        ("scale", "network"): wire(ax, (7.5, 3.0), (8.65, 3.0)),
+        ("network", "table"): wire(ax, (9.4, 2.55), (9.4, 0.85)),
+        ("table", "choose"): wire(ax, (8.65, 0.55), (6.3, 0.55)),
+        ("choose", "world"): wire(ax, (4.9, 0.4), (0.1, 0.4), (0.1, 1.25)),
+        ("choose", "predict"): wire(ax, (2.7, 0.4), (2.7, 3.35)),
+        ("world", "table"): wire(ax, (-0.3, 1.25), (-0.3, -1.1), (9.4, -1.1), (9.4, -0.05)),
+        ("choose", "table"): wire(ax, (6.3, 0.2), (8.65, 0.2)),
+    }
+    for place, text in (
+        ((0.95, 2.75), "sighting"),
+        ((2.7, 1.8), "action"),
+        ((9.4, 1.8), "state $s$"),
+        ((7.5, 0.85), "the row of $s$"),
+        ((7.5, -0.1), "action"),
+        ((3.8, 0.4), "action"),
+        ((4.9, -1.1), "reward $r$"),
+    ):
+        words(ax, place, text)
+    for x, y, text in (
+        (1.9, 4.35, "Kalman filter"),
+        (8.65, 4.35, "ART network"),
+        (4.5, 1.25, "Boltzmann choice, cooling"),
+        (1.9, -0.3, "Q-learning"),
+    ):
+        words(ax, (x, y), text, "left", style.QUIET)
+    return Diagram(ax, parts, wires)
