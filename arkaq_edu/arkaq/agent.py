@@ -461,14 +461,14 @@ class _Segmentation(_Phase):
         return self.law.patterns
 
     def observe(self) -> str:
-        sought = self.agent.task
+        sought = {"approach": "ball", "goal": "goal"}[self.agent.task]
         return f"{sought} seen" if self.observation[-1] else f"no {sought}"
 
     def unknown(self) -> str:
         """Give a blind robot up, for it would ask for resets for ever."""
         self.blind += 1
         if self.blind == _MOST_BLIND_LOOKS:
-            sought = self.agent.task
+            sought = {"approach": "ball", "goal": "goal"}[self.agent.task]
             raise RuntimeError(f"the {sought} was not seen in {self.blind} looks in a row")
         return "ask for reset"
 

@@ -153,7 +153,7 @@ def test_kernels_without_compilation_give_the_same_bits():
     if not hasattr(compiled.backup, "py_func"):
         pytest.skip("nothing is compiled here")
     code = (
-        "import numpy as np; from arkaq_edu.mdp import MDP, QLearner, practice\n"
+        "import numpy as np; from arkaq_edu.mdp import MDP, QLearner, train\n"
         "rng = np.random.default_rng(3); q = QLearner(4, 3, 0.3, 0.9, rng=0)\n"
         "for _ in range(300):\n"
         "    s, t = map(int, rng.integers(4, size=2)); a = int(rng.integers(3))\n"

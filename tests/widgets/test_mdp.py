@@ -16,7 +16,8 @@ from arkaq_edu.mdp import (
     train,
     value_iteration,
 )
-from arkaq_edu.widgets import mdp, planning_explorer, q_learning_explorer
+from arkaq_edu.widgets import mdp as widgets
+from arkaq_edu.widgets import planning_explorer, q_learning_explorer
 from arkaq_edu.widgets.scene import Cells, Line, Points, Text
 
 SWEPT = re.compile(
@@ -102,7 +103,7 @@ def test_the_floor_shows_the_values_after_n_sweeps_and_their_best_actions(explor
 def test_it_starts_before_the_first_sweep_and_a_step_of_the_slider_is_a_sweep():
     explorer = planning_explorer()
     sweeps = explorer.controls["n"]
-    assert (sweeps.value, sweeps.step, sweeps.min, sweeps.max) == (0, 1, 0, mdp.SWEEPS)
+    assert (sweeps.value, sweeps.step, sweeps.min, sweeps.max) == (0, 1, 0, widgets.SWEEPS)
     assert repr(explorer).startswith("sweep 0: 0 arrows turned, 4 of 37 are right")
     sweeps.value += 1
     assert repr(explorer).startswith("sweep 1: ")
@@ -110,7 +111,7 @@ def test_it_starts_before_the_first_sweep_and_a_step_of_the_slider_is_a_sweep():
 
 def test_the_error_falls_by_gamma_a_sweep_at_least_and_stays_below_its_bound(explorer):
     for gamma, slip in itertools.product((0.5, 0.8, 0.95), (0.0, 0.1, 0.5)):
-        run = mdp.sweeps(gamma, slip)
+        run = widgets.sweeps(gamma, slip)
         assert (run.error[1:] <= gamma * run.error[:-1] + 1e-9).all()
         assert (run.error <= run.bound + 1e-9).all()
         assert run.right[-1].sum() == 37 or run.error[-1] > 0.01
@@ -119,7 +120,7 @@ def test_the_error_falls_by_gamma_a_sweep_at_least_and_stays_below_its_bound(exp
 def test_the_lines_are_error_and_bound_and_the_dots_stand_at_this_sweep(explorer):
     for name, value in {"n": 8, "gamma": 0.95, "slip": 0.1}.items():
         explorer.controls[name].value = value
-    run = mdp.sweeps(0.95, 0.1)
+    run = widgets.sweeps(0.95, 0.1)
     panel = explorer.drawn.panels[1]
     bound, error = (layer for layer in panel.layers if isinstance(layer, Line))
     hollow, dot = (layer for layer in panel.layers if isinstance(layer, Points))
@@ -133,14 +134,14 @@ def test_the_chapter_asks_of_the_bridge_and_this_is_the_answer():
     """At its left end: across by default; away where feet slip, and where the sight is short."""
     ways = {}
     for gamma, slip in ((0.95, 0.1), (0.95, 0.5), (0.5, 0.1)):
-        run = mdp.sweeps(gamma, slip)
+        run = widgets.sweeps(gamma, slip)
         ways[gamma, slip] = run.best[-1][run.grid.places.tolist().index([2, 3])].tolist()
     across, away = [True, False, False, False], [False, False, True, False]
     assert list(ways.values()) == [across, away, away]
 
 
 def test_a_slider_that_adds_up_steps_is_no_other_world():
-    assert mdp.draw_sweep(5, 0.95, 0.1 + 0.2).fact == mdp.draw_sweep(5, 0.95, 0.3).fact
+    assert widgets.draw_sweep(5, 0.95, 0.1 + 0.2).fact == widgets.draw_sweep(5, 0.95, 0.3).fact
 
 
 # --- Q-learning -----------------------------------------------------------------------------------
@@ -158,7 +159,7 @@ def test_the_robot_shown_is_one_that_lived_so_long(learner_explorer, steps, alph
     mdp = grid.mdp
     exact, _ = value_iteration(mdp)
     robot = QLearner(mdp.n_states, 4, alpha, 0.95, rng=0)
-    for begin, end in itertools.pairwise(stop for stop in mdp.STEPS if stop <= steps):
+    for begin, end in itertools.pairwise(stop for stop in widgets.STEPS if stop <= steps):
         train(mdp, robot, end - begin, temperature=temperature)
     assert robot.visits.sum() == steps
     best = best_actions(robot.Q)
@@ -167,9 +168,9 @@ def test_the_robot_shown_is_one_that_lived_so_long(learner_explorer, steps, alph
     assert said == steps
     assert right == sum(not (b & ~t).any() for b, t in zip(best[free], truly[free], strict=True))
     assert off == pytest.approx(np.abs(robot.Q.max(axis=1) - exact)[free].mean(), abs=0.051)
-    life = mdp.lives(alpha, temperature).error
-    assert life.shape == (20, len(mdp.STEPS))
-    i = mdp.STEPS.index(steps)
+    life = widgets.lives(alpha, temperature).error
+    assert life.shape == (20, len(widgets.STEPS))
+    i = widgets.STEPS.index(steps)
     assert life[0, i] == pytest.approx(off, abs=0.051)
     assert [mean, spread] == pytest.approx([life[:, i].mean(), life[:, i].std()], abs=0.051)
     if steps:
@@ -177,16 +178,16 @@ def test_the_robot_shown_is_one_that_lived_so_long(learner_explorer, steps, alph
 
 
 def test_every_setting_can_be_drawn_and_the_robots_differ():
-    for alpha in mdp.RATES:
-        scene = mdp.draw_life(20_000, alpha, 10.0)
+    for alpha in widgets.RATES:
+        scene = widgets.draw_life(20_000, alpha, 10.0)
         assert LEARNED.fullmatch(scene.fact)
-    assert len(set(mdp.lives(0.1, 10.0).error[:, 4].tolist())) == 20
+    assert len(set(widgets.lives(0.1, 10.0).error[:, 4].tolist())) == 20
 
 
 def test_the_band_says_what_the_chapter_says_of_learning_rate_and_temperature():
     """At slip 0.1: a constant 1 does not settle; a cold robot stays ignorant; 0.1 does well."""
     final = {
-        (alpha, T): mdp.lives(alpha, T).error[:, -1].mean()
+        (alpha, T): widgets.lives(alpha, T).error[:, -1].mean()
         for alpha, T in ((0.1, 10.0), (1.0, 1000.0), (0.1, 0.1), ("1/visits", 10.0))
     }
     assert final[0.1, 10.0] < 10
