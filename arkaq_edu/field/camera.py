@@ -1,19 +1,19 @@
-"""The camera: pixels first, and from them where the ball and the goal are.
+"""The camera: it renders pixels, and measures from them where the ball and the goal are.
 
-The ball's blob of pixels gives its distance and orientation, the goal's pixels on the horizon
-its orientation and width. One ray is cast through the center of a pixel and returns the color it
-meets. The whole picture is all 33,280 rays; while learning, only those that matter are cast. Both
-show the same.
+A pixel shows what the ray through its center meets first. The ray leaves the lens along the
+optical axis, which looks down by the tilt; one unit along the ray is the focal length. The whole
+picture takes 33,280 rays. While the robot learns, only the rays that can meet the ball or decide
+where the goal is are cast; both ways give the same measurement.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from arkaq_edu import _checks
 from arkaq_edu._compiled import kernel
@@ -25,25 +25,27 @@ if TYPE_CHECKING:
 WIDTH, HEIGHT = 208, 160
 FIELD_OF_VIEW = math.radians(56.9)
 FOCAL_LENGTH = WIDTH / 2 / math.tan(FIELD_OF_VIEW / 2)
-_N, _SUM_COL, _SUM_ROW, _COL_0, _COL_1, _ROW_0, _ROW_1, _LEFT, _RIGHT, _TOP, _BOTTOM = range(11)
 
 _PANELS, _POSTS = pitch.panels(), pitch.posts()
-_LINES = np.array(pitch.lines())
+_LINES = np.sort(np.reshape(pitch.lines(), (-1, 2, 2)), axis=1).reshape(-1, 4)
+_ROWS, _COLS = np.indices((HEIGHT, WIDTH)).reshape(2, -1)
 _GOAL_ACROSS = pitch.GOAL_WIDTH + 4 * pitch.POST_RADIUS
-_RADIUS, _RADIUS_2 = pitch.BALL_RADIUS, pitch.BALL_RADIUS**2
+
+# The colors of the pixels at columns and rows.
+Look = Callable[[NDArray[np.int64], NDArray[np.int64]], NDArray[np.uint8]]
 
 
 class Sighting(NamedTuple):
-    """What one picture says of the ball: distance in mm, orientation in rad (left positive)."""
+    """What one picture says about the ball: distance in mm, orientation in rad (left positive)."""
 
     distance: float
     orientation: float
 
 
 class GoalSighting(NamedTuple):
-    """What one picture says of the sky-blue goal: its middle's orientation, its width (rad).
+    """What one picture says about the sky-blue goal: orientation of its middle and width (rad).
 
-    `whole` tells that the picture holds both its posts.
+    `whole` is True if both posts are in the picture.
     """
 
     orientation: float
@@ -51,240 +53,236 @@ class GoalSighting(NamedTuple):
     whole: bool
 
 
+class View(NamedTuple):
+    """The geometry of one picture: where the lens is, where it points, and where the ball lies.
+
+    `x`, `y` and `height` of the lens and `ball_x`, `ball_y` are in mm; `heading` (to the left) and
+    `tilt` (downward) of the optical axis are in rad.
+    """
+
+    x: float
+    y: float
+    height: float
+    heading: float
+    tilt: float
+    ball_x: float
+    ball_y: float
+
+
 @kernel
-def _ball_hit(ox, oy, oz, dx, dy, dz, bx, by):
-    """Return how far along the ray (in lengths of its direction) the ball is met, or infinity."""
-    cx, cy, cz = bx - ox, by - oy, _RADIUS - oz
+def _ray(view, col, row):
+    """Return the direction of the ray through the center of a pixel, in the field's frame."""
+    right, down = col + 0.5 - WIDTH / 2, row + 0.5 - HEIGHT / 2
+    # The tilt mixes the optical axis and the picture's vertical into ahead and up ...
+    ahead = FOCAL_LENGTH * math.cos(view.tilt) - down * math.sin(view.tilt)
+    up = -FOCAL_LENGTH * math.sin(view.tilt) - down * math.cos(view.tilt)
+    # ... and the heading mixes ahead and right into x and y.
+    c, s = math.cos(view.heading), math.sin(view.heading)
+    return ahead * c + right * s, ahead * s - right * c, up
+
+
+@kernel
+def _hit_ball(view, dx, dy, dz):
+    """Return how far along the ray, in lengths of (dx, dy, dz), the ball is; infinity if missed."""
+    cx, cy = view.ball_x - view.x, view.ball_y - view.y
+    cz = pitch.BALL_RADIUS - view.height
+    # |t d - c| = R is a quadratic equation for t.
     along = dx * cx + dy * cy + dz * cz
     length_2 = dx * dx + dy * dy + dz * dz
-    inside = along * along - length_2 * (cx * cx + cy * cy + cz * cz - _RADIUS_2)
-    if inside < 0.0 or along <= 0.0:
+    root = along * along - length_2 * (cx * cx + cy * cy + cz * cz - pitch.BALL_RADIUS**2)
+    if root < 0.0 or along <= 0.0:
         return np.inf
-    return (along - math.sqrt(inside)) / length_2
+    return (along - math.sqrt(root)) / length_2
 
 
 @kernel
-def _upright_hit(ox, oy, oz, dx, dy, dz, panels, posts, nearest):
-    """Return how far the nearest wall, panel or post is met before `nearest`, and its color."""
+def _hit_panel(view, dx, dy, dz, nearest):
+    """Return the distance and color of the first wall or goal panel nearer than `nearest`."""
     color = -1.0
-    for i in range(panels.shape[0]):
-        px, py = panels[i, 0] - ox, panels[i, 1] - oy
-        wx, wy = panels[i, 2] - panels[i, 0], panels[i, 3] - panels[i, 1]
+    for i in range(len(_PANELS)):
+        x1, y1, x2, y2 = _PANELS[i, 0], _PANELS[i, 1], _PANELS[i, 2], _PANELS[i, 3]
+        px, py = x1 - view.x, y1 - view.y
+        wx, wy = x2 - x1, y2 - y1
         cross = dx * wy - dy * wx
         if cross == 0.0:
             continue
         t = (px * wy - py * wx) / cross
-        along = (px * dy - py * dx) / cross
-        z = oz + t * dz
-        if 0.0 < t < nearest and 0.0 <= along <= 1.0 and 0.0 <= z <= panels[i, 4]:
-            nearest, color = t, panels[i, 5]
-    a = dx * dx + dy * dy
-    for i in range(posts.shape[0]):
-        px, py = posts[i, 0] - ox, posts[i, 1] - oy
-        b = px * dx + py * dy
-        inside = b * b - a * (px * px + py * py - posts[i, 2] * posts[i, 2])
-        if inside < 0.0:
-            continue
-        t = (b - math.sqrt(inside)) / a
-        if 0.0 < t < nearest and 0.0 <= oz + t * dz <= posts[i, 3]:
-            nearest, color = t, posts[i, 4]
+        share = (px * dy - py * dx) / cross
+        z = view.height + t * dz
+        if 0.0 < t < nearest and 0.0 <= share <= 1.0 and 0.0 <= z <= _PANELS[i, 4]:
+            nearest, color = t, _PANELS[i, 5]
     return nearest, color
 
 
 @kernel
-def _ground_color(x, y, lines):
-    """Return the color of the carpet, its lines and what lies beyond it."""
+def _hit_post(view, dx, dy, dz, nearest, color):
+    """Return the distance and color of the first post nearer than `nearest`, else as given."""
+    length_2 = dx * dx + dy * dy
+    for i in range(len(_POSTS)):
+        px, py, radius = _POSTS[i, 0] - view.x, _POSTS[i, 1] - view.y, _POSTS[i, 2]
+        along = px * dx + py * dy
+        root = along * along - length_2 * (px * px + py * py - radius * radius)
+        if root < 0.0:
+            continue
+        t = (along - math.sqrt(root)) / length_2
+        if 0.0 < t < nearest and 0.0 <= view.height + t * dz <= _POSTS[i, 3]:
+            nearest, color = t, _POSTS[i, 4]
+    return nearest, color
+
+
+@kernel
+def _hit_upright(view, dx, dy, dz, nearest):
+    """Return the distance and color of the first upright face nearer than `nearest`, or color -1."""
+    nearest, color = _hit_panel(view, dx, dy, dz, nearest)
+    return _hit_post(view, dx, dy, dz, nearest, color)
+
+
+@kernel
+def _ground_color(x, y):
+    """Return the color of the carpet and its lines, or of what lies beyond it."""
     half = pitch.LINE_WIDTH / 2
     if abs(x) > pitch.CARPET_LENGTH / 2 or abs(y) > pitch.CARPET_WIDTH / 2:
         return pitch.NOTHING
     if abs(math.hypot(x, y) - pitch.CIRCLE_RADIUS) <= half:
         return pitch.WHITE
-    for i in range(lines.shape[0]):
-        low_x, high_x = min(lines[i, 0], lines[i, 2]) - half, max(lines[i, 0], lines[i, 2]) + half
-        low_y, high_y = min(lines[i, 1], lines[i, 3]) - half, max(lines[i, 1], lines[i, 3]) + half
-        if low_x <= x <= high_x and low_y <= y <= high_y:
+    for i in range(len(_LINES)):  # each from its lower left to its upper right end
+        x1, y1, x2, y2 = _LINES[i, 0], _LINES[i, 1], _LINES[i, 2], _LINES[i, 3]
+        if x1 - half <= x <= x2 + half and y1 - half <= y <= y2 + half:
             return pitch.WHITE
     return pitch.GREEN
 
 
 @kernel
-def _direction(col, row, heading, tilt):
-    """Return the direction of the ray through the center of a pixel, in the field's frame."""
-    right, down = col + 0.5 - WIDTH / 2, row + 0.5 - HEIGHT / 2
-    ahead = FOCAL_LENGTH * math.cos(tilt) - down * math.sin(tilt)
-    up = -FOCAL_LENGTH * math.sin(tilt) - down * math.cos(tilt)
-    c, s = math.cos(heading), math.sin(heading)
-    return ahead * c + right * s, ahead * s - right * c, up
-
-
-@kernel
-def _color(col, row, x, y, z, heading, tilt, bx, by, panels, posts, lines):
+def _color(view, col, row):
     """Return the color that the ray through one pixel meets first."""
-    dx, dy, dz = _direction(col, row, heading, tilt)
-    t = _ball_hit(x, y, z, dx, dy, dz, bx, by)
-    nearest, color = _upright_hit(x, y, z, dx, dy, dz, panels, posts, t)
+    dx, dy, dz = _ray(view, col, row)
+    ball = _hit_ball(view, dx, dy, dz)
+    _, color = _hit_upright(view, dx, dy, dz, ball)
     if color >= 0.0:
         return int(color)
-    if nearest < np.inf:
+    if ball < np.inf:
         return pitch.ORANGE
     if dz >= 0.0:
         return pitch.NOTHING
-    return _ground_color(x - z / dz * dx, y - z / dz * dy, lines)
+    return _ground_color(view.x - view.height / dz * dx, view.y - view.height / dz * dy)
 
 
 @kernel
-def _row(row, x, y, z, heading, tilt, bx, by, panels, posts, lines, image):
-    """Cast the rays of one row."""
-    for col in range(WIDTH):
-        image[col] = _color(col, row, x, y, z, heading, tilt, bx, by, panels, posts, lines)
+def _colors(view, cols, rows):
+    """Return the colors of the pixels at `cols` and `rows`."""
+    colors = np.empty(len(cols), np.uint8)
+    for i in range(len(cols)):
+        colors[i] = _color(view, cols[i], rows[i])
+    return colors
 
 
 @kernel
-def _plumb(cols, x, y, z, heading, tilt, bx, by, panels, posts, lines, image):
-    """Cast one ray a row, each in a column of its own."""
-    for row in range(HEIGHT):
-        image[row] = _color(cols[row], row, x, y, z, heading, tilt, bx, by, panels, posts, lines)
+def _span(aside, depth, size):
+    """Return the first and last pixel (exclusive) that the ball can cover along one axis.
 
-
-@kernel
-def _picture(x, y, z, heading, tilt, bx, by, panels, posts, lines, image):
-    """Cast every ray."""
-    for row in range(HEIGHT):
-        _row(row, x, y, z, heading, tilt, bx, by, panels, posts, lines, image[row])
-
-
-@kernel
-def _clear(blob):
-    blob[:] = 0.0
-    blob[_COL_0], blob[_ROW_0] = WIDTH, HEIGHT
-    blob[_COL_1], blob[_ROW_1] = -1, -1
-
-
-@kernel
-def _count(blob, col, row):
-    """Add one pixel of the ball to the blob."""
-    blob[_N] += 1
-    blob[_SUM_COL] += col
-    blob[_SUM_ROW] += row
-    blob[_COL_0], blob[_COL_1] = min(blob[_COL_0], col), max(blob[_COL_1], col)
-    blob[_ROW_0], blob[_ROW_1] = min(blob[_ROW_0], row), max(blob[_ROW_1], row)
-    blob[_LEFT] += col == 0
-    blob[_RIGHT] += col == WIDTH - 1
-    blob[_TOP] += row == 0
-    blob[_BOTTOM] += row == HEIGHT - 1
-
-
-@kernel
-def _blob_of_picture(image, blob):
-    """Gather the pixels of the ball's color."""
-    _clear(blob)
-    for row in range(HEIGHT):
-        for col in range(WIDTH):
-            if image[row, col] == pitch.ORANGE:
-                _count(blob, col, row)
-
-
-@kernel
-def _blob_of_world(x, y, z, heading, tilt, bx, by, panels, posts, blob):
-    """Gather the same pixels, casting only the rays of a window round the ball's image."""
-    _clear(blob)
-    ex, ey = bx - x, by - y
-    ahead = ex * math.cos(heading) + ey * math.sin(heading)
-    left = ey * math.cos(heading) - ex * math.sin(heading)
-    up = _RADIUS - z
-    depth = ahead * math.cos(tilt) - up * math.sin(tilt)
-    below = -ahead * math.sin(tilt) - up * math.cos(tilt)
-    # Each of the window's sides is the tangent to the ball in the plane of that axis.
-    if depth <= _RADIUS:
-        return
-    col_0, col_1 = _shadow(-left, depth, WIDTH)
-    row_0, row_1 = _shadow(below, depth, HEIGHT)
-    for row in range(row_0, row_1):
-        for col in range(col_0, col_1):
-            dx, dy, dz = _direction(col, row, heading, tilt)
-            t = _ball_hit(x, y, z, dx, dy, dz, bx, by)
-            if t < np.inf:
-                _, color = _upright_hit(x, y, z, dx, dy, dz, panels, posts, t)
-                if color < 0.0:
-                    _count(blob, col, row)
-
-
-@kernel
-def _shadow(aside, depth, size):
-    """Return the range of pixels the ball can cover along one axis of the picture."""
+    In the plane of that axis the two tangents to the ball lie asin(R / distance) to either side of
+    its center.
+    """
     middle = math.atan2(aside, depth)
-    half = math.asin(min(1.0, _RADIUS / math.hypot(aside, depth)))
-    low, high = max(middle - half, -1.5), min(middle + half, 1.5)
+    half = math.asin(min(1.0, pitch.BALL_RADIUS / math.hypot(aside, depth)))
+    low, high = max(middle - half, -1.5), min(middle + half, 1.5)  # short of a right angle
     first = math.floor(FOCAL_LENGTH * math.tan(low) + size / 2 - 0.5)
     last = math.ceil(FOCAL_LENGTH * math.tan(high) + size / 2 + 0.5)
     return int(max(0, min(size, first))), int(max(0, min(size, last)))
 
 
 @kernel
-def _measure(blob, z, tilt, min_pixels):
-    """Return distance and orientation from a blob, or a distance of zero where it shows none."""
-    n = blob[_N]
-    cut = 0
-    for edge in (_LEFT, _RIGHT, _TOP, _BOTTOM):  # a sum of NumPy's booleans would be a boolean
-        cut += 1 if blob[edge] > 0 else 0
-    if n < min_pixels or cut > 1:
+def _ball_pixels(view):
+    """Return columns and rows of the pixels that show the ball; only rays near it are cast."""
+    ex, ey, up = view.ball_x - view.x, view.ball_y - view.y, pitch.BALL_RADIUS - view.height
+    ahead = ex * math.cos(view.heading) + ey * math.sin(view.heading)
+    left = ey * math.cos(view.heading) - ex * math.sin(view.heading)
+    depth = ahead * math.cos(view.tilt) - up * math.sin(view.tilt)
+    below = -ahead * math.sin(view.tilt) - up * math.cos(view.tilt)
+    col_0, col_1, row_0, row_1 = 0, 0, 0, 0
+    if depth > pitch.BALL_RADIUS:
+        col_0, col_1 = _span(-left, depth, WIDTH)
+        row_0, row_1 = _span(below, depth, HEIGHT)
+    size = (col_1 - col_0) * (row_1 - row_0)
+    cols, rows, n = np.empty(size, np.int64), np.empty(size, np.int64), 0
+    for row in range(row_0, row_1):
+        for col in range(col_0, col_1):
+            dx, dy, dz = _ray(view, col, row)
+            ball = _hit_ball(view, dx, dy, dz)
+            if ball < np.inf and _hit_upright(view, dx, dy, dz, ball)[1] < 0.0:
+                cols[n], rows[n] = col, row
+                n += 1
+    return cols[:n], rows[:n]
+
+
+@kernel
+def _whole_ball(seen, chord, size):
+    """Return the area of a ball's image that the frame cuts, and how far in its center lies.
+
+    The frame cuts a circle along a chord c and leaves a segment of height h, so the radius is
+    h / 2 + c^2 / (8 h). Off the middle of the picture the circle is stretched outward by
+    1 / cos(angle), which the height `seen` (pixels) must lose first. The frame lies `size` / 2
+    pixels off the middle.
+    """
+    stretch = math.hypot(1.0, size / 2 / FOCAL_LENGTH)
+    height = seen / stretch
+    radius = height / 2 + chord * chord / (8 * height)
+    return math.pi * radius * radius * stretch, (height - radius) * stretch
+
+
+@kernel
+def _measure(cols, rows, height, tilt, min_pixels):
+    """Return distance and orientation of the ball from its pixels; (0, 0) if they do not tell."""
+    area = float(len(cols))
+    left, right = (cols == 0).sum(), (cols == WIDTH - 1).sum()
+    top, bottom = (rows == 0).sum(), (rows == HEIGHT - 1).sum()
+    cuts = int(left > 0) + int(right > 0) + int(top > 0) + int(bottom > 0)
+    if area < min_pixels or cuts > 1:
         return 0.0, 0.0
-    right = blob[_SUM_COL] / n + 0.5 - WIDTH / 2
-    down = blob[_SUM_ROW] / n + 0.5 - HEIGHT / 2
-    if cut == 1:
-        # The frame has cut a circle along a chord. From the chord's length c and the height w of
-        # the part still seen: radius = w / 2 + c^2 / (8 w). A ball off the middle of the picture
-        # is stretched outwards by 1 / cos(angle), which w must lose first.
-        if blob[_LEFT] + blob[_RIGHT] > 0:
-            seen, chord = blob[_COL_1] - blob[_COL_0] + 1, blob[_LEFT] + blob[_RIGHT]
-            stretch = math.hypot(1.0, WIDTH / 2 / FOCAL_LENGTH)
-        else:
-            seen, chord = blob[_ROW_1] - blob[_ROW_0] + 1, blob[_TOP] + blob[_BOTTOM]
-            stretch = math.hypot(1.0, HEIGHT / 2 / FOCAL_LENGTH)
-        height = seen / stretch
-        radius = height / 2 + chord * chord / (8 * height)
-        inwards = (height - radius) * stretch
-        if inwards < 0.0:
-            return 0.0, 0.0
-        if blob[_LEFT] + blob[_RIGHT] > 0:
-            right = (WIDTH / 2 - inwards) * (1 if blob[_RIGHT] > 0 else -1)
-        else:
-            down = (HEIGHT / 2 - inwards) * (1 if blob[_BOTTOM] > 0 else -1)
-        n = math.pi * radius * radius * stretch
-    # A pixel at an angle a off the axis covers a solid angle of cos^3(a) / f^2, and a ball of
-    # radius R at range D one of 2 pi (1 - sqrt(1 - (R / D)^2)).
-    cosine = FOCAL_LENGTH / math.sqrt(FOCAL_LENGTH**2 + right * right + down * down)
-    cap = n * cosine**3 / FOCAL_LENGTH**2 / (2 * math.pi)
-    span = pitch.BALL_RADIUS / math.sqrt(cap * (2 - cap))
+    aside = cols.sum() / area + 0.5 - WIDTH / 2
+    down = rows.sum() / area + 0.5 - HEIGHT / 2
+    inward = 0.0
+    if left + right > 0:
+        area, inward = _whole_ball(cols.max() - cols.min() + 1, left + right, WIDTH)
+        aside = (WIDTH / 2 - inward) * (1 if right > 0 else -1)
+    elif top + bottom > 0:
+        area, inward = _whole_ball(rows.max() - rows.min() + 1, top + bottom, HEIGHT)
+        down = (HEIGHT / 2 - inward) * (1 if bottom > 0 else -1)
+    if inward < 0.0:  # the center is out of the picture
+        return 0.0, 0.0
+    # A pixel at an angle a off the axis covers a solid angle of cos^3(a) / f^2. A ball of radius R
+    # at range D covers 2 pi (1 - sqrt(1 - (R / D)^2)) = 2 pi cap.
+    cosine = FOCAL_LENGTH / math.sqrt(FOCAL_LENGTH**2 + aside * aside + down * down)
+    cap = area * cosine**3 / FOCAL_LENGTH**2 / (2 * math.pi)
+    reach = pitch.BALL_RADIUS / math.sqrt(cap * (2 - cap))
     ahead = FOCAL_LENGTH * math.cos(tilt) - down * math.sin(tilt)
-    drop = z - pitch.BALL_RADIUS
-    return math.sqrt(max(span * span - drop * drop, 1.0)), math.atan2(-right, ahead)
+    drop = height - pitch.BALL_RADIUS
+    return math.sqrt(max(reach * reach - drop * drop, 1.0)), math.atan2(-aside, ahead)
 
 
 class Camera:
     """The ERS-7's camera: 208 x 160 pixels over 56.9 x 45.2 degrees.
 
-    It sits over the point the robot turns about, so that one distance and one orientation serve
-    the picture and the body alike. The nearest ball, touching the nose, then lies at
-    317 / 2 + 42 = 200 mm: the lower end of the thesis's interval.
+    It sits above the point that the robot turns about. So one distance and one orientation hold
+    for the picture and for the body. A ball that touches the nose lies at 317 / 2 + 42 = 200 mm,
+    the lower end of the thesis's interval.
 
     Parameters
     ----------
     height : float
-        Height of the lens above the carpet (mm).
+        Height of the lens above the carpet (mm), in [42, 1000].
     tilt : float
         How far the optical axis looks down (rad), in [0, 1]. At .2 the ball stays in the
         picture from 300 mm to the far wall.
     min_pixels : int
-        The smallest blob that counts as a ball. Smaller ones are what a color table takes for
-        a ball by mistake. It limits how far the robot sees: a ball at 4,100 mm covers about
-        12 pixels, and sightings begin to drop out from 4,300 mm on.
+        The smallest blob that counts as a ball. A color table mistakes smaller ones for a ball.
+        This limits how far the robot sees: a ball at 4,100 mm covers about 12 pixels, and
+        sightings begin to drop out at 4,300 mm.
 
     Notes
     -----
-    Nothing is random here. The error is what remains when a ball is cut into whole pixels, so it
-    grows with the square of the distance: a blob whose radius is off by s pixels gives a
-    distance off by s d^2 / (f R), 209 mm at 4,100 mm for a tenth of a pixel.
+    Nothing is random here. The error remains because a ball is cut into whole pixels, so it
+    grows with the square of the distance: see `distance_error`.
 
     References
     ----------
@@ -305,10 +303,14 @@ class Camera:
         self.height = _checks.number("height", height, pitch.BALL_RADIUS, 1000)
         self.tilt = _checks.number("tilt", tilt, 0, 1)
         self.min_pixels = _checks.integer("min_pixels", min_pixels, 1)
-        self._blob = np.zeros(11)
+
+    def view(self, world: World) -> View:
+        """Return the geometry of a picture taken now."""
+        x, y, heading = world.pose
+        return View(x, y, self.height, heading + world.pan, self.tilt, *world.ball)
 
     def sighting(self, world: World) -> Sighting | None:
-        """Return what the camera sees of the ball from where the robot stands and looks.
+        """Return what the camera sees of the ball, counted from the body.
 
         Parameters
         ----------
@@ -318,16 +320,15 @@ class Camera:
         Returns
         -------
         Sighting or None
-            None where too few pixels show the ball, or its center lies outside the picture; and
-            while the head moves.
+            None if too few pixels show the ball, if its center is outside the picture, or while
+            the head moves.
         """
         if self.blurred(world):
             return None
-        _blob_of_world(*self._view(world), _PANELS, _POSTS, self._blob)
-        seen = self._sighting()
-        if seen is None or world.pan == 0.0:
-            return seen
-        return Sighting(seen.distance, seen.orientation + world.pan)
+        seen = self._measured(*_ball_pixels(self.view(world)))
+        if seen and world.pan:
+            seen = seen._replace(orientation=seen.orientation + world.pan)
+        return seen
 
     def sighting_in(self, colors: np.ndarray) -> Sighting | None:
         """Return what a rendered picture shows of the ball.
@@ -335,23 +336,27 @@ class Camera:
         Parameters
         ----------
         colors : ndarray of uint8, shape (160, 208)
-            A picture as `colors` gives it.
+            A picture as `colors` returns it.
 
         Returns
         -------
         Sighting or None
             The same as `sighting` from the same place with the head straight.
         """
-        _blob_of_picture(self._checked(colors), self._blob)
-        return self._sighting()
+        rows, cols = np.nonzero(_checked(colors) == pitch.ORANGE)
+        return self._measured(cols, rows)
+
+    def _measured(self, cols: np.ndarray, rows: np.ndarray) -> Sighting | None:
+        distance, orientation = _measure(cols, rows, self.height, self.tilt, self.min_pixels)
+        return Sighting(distance, orientation) if distance > 0.0 else None
 
     def goal(self, world: World) -> GoalSighting | None:
-        """Return what the camera sees of the sky-blue goal.
+        """Return what the camera sees of the sky-blue goal, counted from the body.
 
-        The row of the horizon is what lies as high as the lens: above the ball and the walls,
-        below the goal's bar. Its sky-blue pixels are the goal from post to post. Where the frame
-        cuts one side off, the height of the other post's image gives the distance and so the
-        width that the whole goal has, as if it were seen from straight in front.
+        The row of the horizon shows what is as high as the lens: above the ball and the walls,
+        below the bar of the goal. Its sky-blue pixels are the goal from post to post. If the
+        frame cuts off one side, the height of the other post in the picture gives the distance.
+        The distance gives the width that the whole goal would have, seen from straight in front.
 
         Parameters
         ----------
@@ -361,7 +366,7 @@ class Camera:
         Returns
         -------
         GoalSighting or None
-            None where the horizon shows no sky-blue, and while the head moves.
+            None if the horizon shows no sky-blue, or while the head moves.
 
         Examples
         --------
@@ -374,16 +379,8 @@ class Camera:
         """
         if self.blurred(world):
             return None
-        view = (*self._view(world), _PANELS, _POSTS, _LINES)
-        horizon = np.empty(WIDTH, dtype=np.uint8)
-        _row(self._horizon, *view, horizon)
-
-        def plumb(cols: np.ndarray) -> np.ndarray:
-            pixels = np.empty(HEIGHT, dtype=np.uint8)
-            _plumb(cols, *view, pixels)
-            return pixels
-
-        seen = self._goal(horizon, plumb)
+        view = self.view(world)
+        seen = self._goal(lambda cols, rows: _colors(view, cols, rows))
         return seen and seen._replace(orientation=seen.orientation + world.pan)
 
     def goal_in(self, colors: np.ndarray) -> GoalSighting | None:
@@ -392,30 +389,64 @@ class Camera:
         Parameters
         ----------
         colors : ndarray of uint8, shape (160, 208)
-            A picture as `colors` gives it.
+            A picture as `colors` returns it.
 
         Returns
         -------
         GoalSighting or None
             The same as `goal` from the same place with the head straight.
         """
-        colors = self._checked(colors)
-        return self._goal(colors[self._horizon], lambda cols: colors[np.arange(HEIGHT), cols])
+        colors = _checked(colors)
+        return self._goal(lambda cols, rows: colors[rows, cols])
+
+    def _goal(self, look: Look) -> GoalSighting | None:
+        """Measure the goal on the row of the horizon."""
+        horizon = max(0, math.floor(HEIGHT / 2 - FOCAL_LENGTH * math.tan(self.tilt)))
+        cols = np.arange(WIDTH)
+        blue = np.flatnonzero(look(cols, np.full(WIDTH, horizon)) == pitch.BLUE)
+        if not len(blue):
+            return None
+        first, last = int(blue[0]), int(blue[-1])
+        ahead = self._ahead(horizon + 0.5 - HEIGHT / 2)
+        left, right = math.atan2(WIDTH / 2 - first, ahead), math.atan2(WIDTH / 2 - last - 1, ahead)
+        cut_left, cut_right = first == 0, last == WIDTH - 1
+        if cut_left != cut_right:
+            post = last - 1 if cut_left else first + 1
+            width = self._width_by_height((post + 0.5 - WIDTH / 2) / ahead, look)
+            left, right = (right + width, right) if cut_left else (left, left - width)
+        return GoalSighting((left + right) / 2, left - right, not (cut_left or cut_right))
+
+    def _width_by_height(self, aside: float, look: Look) -> float:
+        """Return the width (rad) of the whole goal from the height of a post's image.
+
+        `aside` is how far to the right the post lies for each unit ahead. A tilted camera shows an
+        upright post leaning: in each row it lies `aside` times as far to the right as the ray of
+        that row goes ahead.
+        """
+        rows = np.arange(HEIGHT)
+        cols = np.floor(aside * self._ahead(rows + 0.5 - HEIGHT / 2) + WIDTH / 2)
+        blue = np.flatnonzero(look(cols.clip(0, WIDTH - 1).astype(int), rows) == pitch.BLUE)
+        edges = np.array([blue[0], blue[-1] + 1]) - HEIGHT / 2
+        fall = FOCAL_LENGTH * math.sin(self.tilt) + edges * math.cos(self.tilt)
+        top, foot = fall / (self._ahead(edges) * math.hypot(1.0, aside))
+        return 2 * math.asin(min(1.0, _GOAL_ACROSS / 2 * (foot - top) / pitch.GOAL_HEIGHT))
+
+    def _ahead(self, down: Any) -> Any:
+        """Return how far ahead (pixels) a ray goes that runs `down` pixels below the axis."""
+        return FOCAL_LENGTH * math.cos(self.tilt) - down * math.sin(self.tilt)
 
     def blurred(self, world: World) -> bool:
-        """Return whether a picture taken now would be useless, for the head moves."""
+        """Return whether a picture taken now would be useless because the head moves."""
         return world.head.blurs and world.unsettled > 0.0
 
     def colors(self, world: World) -> np.ndarray:
-        """Return the color-segmented picture: an index into `pitch.PALETTE` a pixel.
+        """Return the color-segmented picture: for each pixel an index into `pitch.PALETTE`.
 
         Returns
         -------
         ndarray of uint8, shape (160, 208)
         """
-        image = np.empty((HEIGHT, WIDTH), dtype=np.uint8)
-        _picture(*self._view(world), _PANELS, _POSTS, _LINES, image)
-        return image
+        return _colors(self.view(world), _COLS, _ROWS).reshape(HEIGHT, WIDTH)
 
     def picture(self, world: World) -> np.ndarray:
         """Return the picture in color (figure 5.3).
@@ -427,11 +458,14 @@ class Camera:
         return pitch.PALETTE[self.colors(world)]
 
     def distance_error(self, distance: float, pixels: float = 0.05) -> float:
-        """Return the error of the distance (mm) that an error of the blob's radius makes.
+        """Return the error of the distance (mm) that an error in the blob's radius causes.
+
+        A ball at distance d has an image of radius f R / d pixels. If the radius is off by s
+        pixels, the distance is off by s d^2 / (f R).
 
         Parameters
         ----------
-        distance : float
+        distance : float or ndarray
             Distance of the ball (mm), >= 0.
         pixels : float
             Error of the radius (pixels).
@@ -443,55 +477,8 @@ class Camera:
         """
         return pixels * distance**2 / (FOCAL_LENGTH * pitch.BALL_RADIUS)
 
-    def _view(self, world: World) -> tuple[float, float, float, float, float, float, float]:
-        x, y, heading = world.pose
-        return x, y, self.height, heading + world.pan, self.tilt, *world.ball
 
-    @staticmethod
-    def _checked(colors: np.ndarray) -> np.ndarray:
-        if colors.shape != (HEIGHT, WIDTH):
-            raise ValueError(f"colors must have shape ({HEIGHT}, {WIDTH}), got {colors.shape}")
-        return colors
-
-    @property
-    def _horizon(self) -> int:
-        """The row whose rays stay as high as the lens; the top row where that is out of view."""
-        return max(0, math.floor(HEIGHT / 2 - FOCAL_LENGTH * math.tan(self.tilt)))
-
-    def _ahead(self, down: ArrayLike) -> NDArray[np.float64]:
-        """Return how far ahead (pixels) rays go that run so far (pixels) below the axis."""
-        return FOCAL_LENGTH * math.cos(self.tilt) - np.asarray(down) * math.sin(self.tilt)
-
-    def _goal(
-        self, horizon: np.ndarray, plumb: Callable[[np.ndarray], np.ndarray]
-    ) -> GoalSighting | None:
-        """Measure the goal from the pixels of the horizon's row, and of a line down a post."""
-        columns = np.flatnonzero(horizon == pitch.BLUE)
-        if not len(columns):
-            return None
-        first, last = int(columns[0]), int(columns[-1])
-        ahead = self._ahead(self._horizon + 0.5 - HEIGHT / 2)
-        left = math.atan2(WIDTH / 2 - first, ahead)
-        right = math.atan2(WIDTH / 2 - last - 1, ahead)
-        cut_left, cut_right = first == 0, last == WIDTH - 1
-        if cut_left != cut_right:
-            width = self._width_by_height((last - 1 if cut_left else first + 1), plumb)
-            left, right = (right + width, right) if cut_left else (left, left - width)
-        return GoalSighting((left + right) / 2, left - right, not (cut_left or cut_right))
-
-    def _width_by_height(self, col: int, plumb: Callable[[np.ndarray], np.ndarray]) -> float:
-        """Return the width (rad) of a whole goal, one post of which is seen in a column."""
-        # What stands upright leans in the picture of a tilted camera: all of it lies as far to
-        # the right of the axis, for its distance ahead.
-        aside = (col + 0.5 - WIDTH / 2) / self._ahead(self._horizon + 0.5 - HEIGHT / 2)
-        down = np.arange(HEIGHT) + 0.5 - HEIGHT / 2
-        cols = np.floor(aside * self._ahead(down) + WIDTH / 2)
-        rows = np.flatnonzero(plumb(cols.clip(0, WIDTH - 1).astype(np.int64)) == pitch.BLUE)
-        edges = np.array([rows[0], rows[-1] + 1]) - HEIGHT / 2
-        fall = FOCAL_LENGTH * math.sin(self.tilt) + edges * math.cos(self.tilt)
-        top, foot = fall / (self._ahead(edges) * math.hypot(1.0, aside))
-        return 2 * math.asin(min(1.0, _GOAL_ACROSS / 2 * (foot - top) / pitch.GOAL_HEIGHT))
-
-    def _sighting(self) -> Sighting | None:
-        distance, orientation = _measure(self._blob, self.height, self.tilt, self.min_pixels)
-        return Sighting(distance, orientation) if distance > 0.0 else None
+def _checked(colors: np.ndarray) -> np.ndarray:
+    if colors.shape != (HEIGHT, WIDTH):
+        raise ValueError(f"colors must have shape ({HEIGHT}, {WIDTH}), got {colors.shape}")
+    return colors
