@@ -10,7 +10,7 @@ from gymnasium import spaces
 
 from arkaq_edu import _checks
 from arkaq_edu.field import Camera, Legs, Supervisor, World, bird_view
-from arkaq_edu.field.supervisor import FARTHEST, Placement
+from arkaq_edu.field.supervisor import MAX_BALL_DISTANCE, Placement
 
 # Left and right footstep (mm): forward, and arcs that turn by a tenth of a radian.
 FOOTSTEPS = ((100.0, 100.0), (91.0, 109.0), (109.0, 91.0))
@@ -98,7 +98,7 @@ class BallApproachEnv(gymnasium.Env[np.ndarray, int]):
     def __init__(
         self,
         near: float = 600.0,
-        far: float = FARTHEST,
+        far: float = MAX_BALL_DISTANCE,
         placement: Placement = "area",
         legs: Legs | None = None,
         camera: Camera | None = None,
@@ -131,7 +131,7 @@ class BallApproachEnv(gymnasium.Env[np.ndarray, int]):
                 raise ValueError(f"options must hold distance and orientation, got {options!r}")
             self.supervisor.place(
                 self.world,
-                _checks.number("distance", distance, 200, FARTHEST),
+                _checks.number("distance", distance, 200, MAX_BALL_DISTANCE),
                 _checks.number("orientation", orientation, -0.5, 0.5),
             )
         else:

@@ -11,7 +11,7 @@ from gymnasium import spaces
 
 from arkaq_edu import _checks
 from arkaq_edu.field import Camera, GoalSupervisor, Head, Kick, Legs, World, bird_view, motion
-from arkaq_edu.field.goal import CLOSEST, FARTHEST, MISS_REWARD
+from arkaq_edu.field.goal import MAX_GOAL_DISTANCE, MIN_GOAL_DISTANCE, MISS_REWARD
 
 ACTIONS = ("turn left", "turn right", "kick")
 TURN_LEFT, TURN_RIGHT, KICK = range(3)
@@ -154,7 +154,9 @@ class ScoreGoalEnv(gymnasium.Env[np.ndarray, int]):
                 )
             self.start = STARTS[goal_distance]
         else:
-            distance = _checks.number("goal_distance", goal_distance, CLOSEST, FARTHEST)
+            distance = _checks.number(
+                "goal_distance", goal_distance, MIN_GOAL_DISTANCE, MAX_GOAL_DISTANCE
+            )
             self.start = STARTS["near"]._replace(distance=distance)
         self.render_mode = render_mode
         self.patience = _checks.integer("patience", patience, 1)

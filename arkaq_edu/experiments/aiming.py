@@ -19,8 +19,8 @@ from arkaq_edu import _checks
 from arkaq_edu.arkaq import Sensing, TrainingSettings
 from arkaq_edu.envs.score_goal import KICK, STARTS, TURN_LEFT, TURN_RIGHT
 from arkaq_edu.field import GoalSupervisor, World, pitch
-from arkaq_edu.field.goal import CLOSEST, FARTHEST, GOAL_REWARD, MISS_REWARD
-from arkaq_edu.field.supervisor import START
+from arkaq_edu.field.goal import GOAL_REWARD, MAX_GOAL_DISTANCE, MIN_GOAL_DISTANCE, MISS_REWARD
+from arkaq_edu.field.supervisor import ROBOT_START
 from arkaq_edu.mdp import MDP, value_iteration
 
 Floats = NDArray[np.float64]
@@ -62,9 +62,9 @@ def ball_paths(n: int = 500, seed: int = 0) -> Floats:
     """
     world, ways = World(rng=_checks.integer("seed", seed)), []
     for _ in range(_checks.integer("n", n, 1)):
-        world.reset(START, (0.0, -pitch.WIDTH / 2))
+        world.reset(ROBOT_START, (0.0, -pitch.WIDTH / 2))
         GoalSupervisor.set_ball(world)
-        way = np.array(world.swing_paw()) - START[:2]
+        way = np.array(world.swing_paw()) - ROBOT_START[:2]
         run = np.append(0.0, np.hypot(*np.diff(way, axis=0).T).cumsum())
         marks = np.linspace(0.0, run[-1], _MARKS)
         ways.append(np.column_stack([np.interp(marks, run, along) for along in way.T]))
@@ -182,7 +182,7 @@ def chance(ways: Floats, distance: float, orientations: ArrayLike) -> Floats:
     >>> bool(straight > 0.4 > 0.2 > aside)
     True
     """
-    _checks.number("distance", distance, CLOSEST, FARTHEST)
+    _checks.number("distance", distance, MIN_GOAL_DISTANCE, MAX_GOAL_DISTANCE)
     column = np.asarray(orientations, dtype=float)[:, None]
     return is_goal(on_the_field(ways, distance, column)).mean(axis=-1)
 

@@ -18,7 +18,7 @@ from arkaq_edu._paths import data_file
 from arkaq_edu.arkaq import Arkaq, Estimator, TrainingSettings
 from arkaq_edu.envs.ball_approach import FOOTSTEPS
 from arkaq_edu.field import pitch
-from arkaq_edu.field.supervisor import FARTHEST, random_place
+from arkaq_edu.field.supervisor import MAX_BALL_DISTANCE, random_place
 
 # A policy begins an episode and then chooses from the observation and the true state.
 Choice = Callable[[NDArray[np.floating], dict[str, Any]], int]
@@ -173,7 +173,7 @@ def evaluate(policy: Policy, n: int = 500, seed: int = 0, near: float = 600.0) -
     rows = []
     for episode in range(_checks.integer("n", n, 1)):
         rng = np.random.default_rng([_checks.integer("seed", seed), episode])
-        distance, orientation = random_place(rng, near, FARTHEST)
+        distance, orientation = random_place(rng, near, MAX_BALL_DISTANCE)
         rows.append(_approach(env, policy(episode), distance, orientation, rng))
     return pd.DataFrame(rows)
 

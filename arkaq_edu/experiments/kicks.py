@@ -9,7 +9,7 @@ from arkaq_edu import _checks
 from arkaq_edu._paths import data_file
 from arkaq_edu.field import GoalSupervisor, Kick, World
 from arkaq_edu.field.kick import MARK
-from arkaq_edu.field.supervisor import START
+from arkaq_edu.field.supervisor import ROBOT_START
 
 
 def load_kicks() -> pd.DataFrame:
@@ -67,9 +67,10 @@ def record_kicks(n: int = 50, seed: int = 0, kick: Kick | None = None) -> pd.Dat
     world = World(rng=seed, kick=kick)
     rows = []
     for _ in range(n):
-        world.reset(START, (0.0, -1800.0))
+        world.reset(ROBOT_START, (0.0, -1800.0))
         GoalSupervisor.set_ball(world)
-        ahead, aside = np.transpose(world.swing_paw()) - np.array([[START[0] + MARK[0]], [0.0]])
+        ahead, aside = np.transpose(world.swing_paw())
+        ahead -= ROBOT_START[0] + MARK[0]
         passed = np.interp(2000.0, ahead, aside) if ahead[-1] > 2000.0 else np.nan
         rows.append((ahead[-1], aside[-1], passed))
     return pd.DataFrame(rows, columns=["x", "y", "y_at_2m"])

@@ -16,7 +16,7 @@ from arkaq_edu import _checks
 from arkaq_edu._paths import data_file
 from arkaq_edu.arkaq import Estimator, Sensing, TrainingSettings
 from arkaq_edu.experiments import approach, goal, streams
-from arkaq_edu.field import World
+from arkaq_edu.field import World, motion
 
 VIGILANCE = 0.1
 
@@ -204,11 +204,7 @@ def _stream(seed: int) -> tuple[int, dict[str, float]]:
         measured[f"mean NIS (2 is right), {name} Kalman filter"] = mean_nis(
             stream, getattr(Sensing, name)()
         )
-    world = World(rng=seed)
-    world.reset((-2500.0, 0.0, 0.0), (0.0, 1500.0))
-    for _ in range(20):
-        world.cycle(100.0, 100.0)
-    _, y, heading = world.pose
+    _, y, heading = map(float, motion.straight_walk(World(rng=seed))[-1])
     measured["straight walk of 2 m: drift to the left (mm)"] = y
     measured["straight walk of 2 m: turn to the right (rad)"] = -heading
     return seed, measured

@@ -2,12 +2,12 @@
 
 Thesis 5.1. Units: mm, rad, s, g; orientation is positive to the left.
 
-The three uncertainties of thesis 5.1.3 are each a dataclass of `World`, and can be turned off:
+Each of the three uncertainties of thesis 5.1.3 is a dataclass of `World` and can be turned off:
 
 - the walk drifts: ``Legs(slide=0, pull=0, variation=0)``;
-- sightings are void while the head moves: ``Head(blurs=False)``;
-- where the ball lies before a kick is not certain: ``Kick(spread=0)``, and ``swerve=0`` for a
-  carpet on which it runs straight.
+- there are no sightings while the head moves: ``Head(blurs=False)``;
+- the ball's place before a kick varies: ``Kick(spread=0)``; ``swerve=0`` also makes it roll
+  straight.
 """
 
 from arkaq_edu.field import motion

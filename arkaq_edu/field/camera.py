@@ -132,7 +132,7 @@ def _hit_post(view, dx, dy, dz, nearest, color):
 
 @kernel
 def _hit_upright(view, dx, dy, dz, nearest):
-    """Return the distance and color of the first upright face nearer than `nearest`, or color -1."""
+    """Return how far the first wall, panel or post before `nearest` is, and its color or -1."""
     nearest, color = _hit_panel(view, dx, dy, dz, nearest)
     return _hit_post(view, dx, dy, dz, nearest, color)
 

@@ -1,4 +1,4 @@
-"""The head: it pans, and while its servo moves no sighting is to be trusted."""
+"""The head: it pans, and while it moves the camera's pictures are useless."""
 
 from __future__ import annotations
 
@@ -9,25 +9,24 @@ from arkaq_edu import _checks
 
 @dataclass(frozen=True)
 class Head:
-    """How far and how fast the head pans, and what that does to the pictures.
+    """How far and how fast the head pans, and how that affects the pictures.
 
     Parameters
     ----------
     reach : float
-        The farthest it pans to either side (rad), in [0, 1.6]. With 0 it looks straight ahead
-        for good.
+        The largest pan to either side (rad), in [0, 1.6]. With 0 it always looks straight ahead.
     speed : float
-        How fast (rad/s).
+        Speed of the pan (rad/s).
     settling : float
-        How long it still sways when it has got there (s).
+        How long the head sways after it has arrived (s).
     blurs : bool
-        Whether pictures taken while it moves or sways are useless (thesis 5.1.3.2). Without, the
+        Whether pictures taken while it moves or sways are useless (thesis 5.1.3.2). If False, the
         robot need not wait before it looks.
 
     Notes
     -----
-    The reach is the ERS-7's, 93 degrees. The speed is what its servo does under the load of the
-    head, the settling three pictures of 1/30 s; the thesis gives neither.
+    The reach is the ERS-7's, 93 degrees. The thesis gives neither of the other two. The speed is
+    that of the servo under the load of the head; the settling time is three pictures of 1/30 s.
     """
 
     reach: float = 1.6

@@ -1,4 +1,4 @@
-"""The kick: a paw swings at the ball, and where the ball lies against it decides where it goes."""
+"""The kick: a paw swings at the ball, and where it meets the ball decides where the ball goes."""
 
 from __future__ import annotations
 
@@ -11,41 +11,43 @@ import pymunk
 from arkaq_edu import _checks
 from arkaq_edu.field import pitch
 
-# Where the ball should lie before a kick, from the point the robot turns about (mm): ahead, and a
-# little to the right of the paw's line, for the real robot's kicks go a little to the right.
+# Where the ball should lie before a kick (mm): ahead and to the left of the point that the robot
+# turns about. It is a little to the right, because the real robot's kicks go a little to the right.
 MARK = (245.0, -1.9)
 PAW_RADIUS = 30.0
-# The paw speeds up in proportion to the way it has made, as anything does that topples: after
-# `SWING` mm, where it meets a ball on the mark, its speed is SWING * QUICKENING mm/s.
-SWING = 54.0
-QUICKENING = 14.7
-_AWAKE = 12.0  # mm into the swing; with less speed than here no ball is met
-# How far they get in one step (mm): the paw, and a rolling ball, which then passes through nothing.
+# The paw speeds up in proportion to the distance it has traveled, as a falling stick does: speed =
+# PAW_RATE * distance. It meets a ball on the mark after PAW_TRAVEL.
+PAW_TRAVEL = 54.0  # mm
+PAW_RATE = 14.7  # 1/s
+_PAW_START = 12.0  # mm into the swing; before that the paw is slow and meets no ball
+# How far they move in one step (mm). A ball that moves this far passes through nothing.
 _PAW_STRIDE, _BALL_STRIDE = 2.0, 30.0
-_LONGEST_STEP = 1 / 20
-_STEPS_A_LOOK = 3  # steps between two looks at how fast the ball still is
-_RESTING = 1.0  # mm/s
+_LONGEST_STEP = 1 / 20  # s
+_STEPS_A_LOOK = 3  # steps between two checks of the ball's speed
+_RESTING = 1.0  # mm/s; a slower ball is at rest
+
+Path = list[tuple[float, float]]
 
 
 @dataclass(frozen=True)
 class Kick:
-    """How far a kick is from being the same every time.
+    """How much kicks differ from each other.
 
     Parameters
     ----------
     spread : float
-        Standard deviation of where the ball lies before the kick (mm), ahead and across alike, in
-        [0, 12]. Grabbing depends on the jaw and on friction and is not modeled; the supervisor
-        sets the ball, as well as the robot would (thesis 5.1.3.3).
+        Standard deviation of the ball's place before the kick (mm), in [0, 12], along both axes.
+        Grabbing depends on the jaw and on friction and is not modeled. Instead the supervisor
+        places the ball as precisely as the robot would (thesis 5.1.3.3).
     swerve : float
-        The strongest sideways pull on a rolling ball (mm/s^2), in [0, 200]; drawn once a kick,
-        uniform in [-swerve, swerve]. On a carpet a ball does not run quite straight, and hooks as
-        it gets slow.
+        The largest sideways acceleration of a rolling ball (mm/s^2), in [0, 200]. Each kick draws
+        its own, uniform in [-swerve, swerve]. On a carpet a ball does not roll quite straight,
+        and curves more as it slows down.
 
     Notes
     -----
-    The defaults, with `MARK`, `SWING` and `QUICKENING`, are calibrated on 50 kicks of a real
-    robot (``data/kicks.csv``). With both zero every kick is the same.
+    The defaults, with `MARK`, `PAW_TRAVEL` and `PAW_RATE`, are calibrated on 50 kicks of a real
+    robot (``data/kicks.csv``). With both at zero every kick is the same.
 
     References
     ----------
@@ -67,58 +69,58 @@ def build_paw(pose: tuple[float, float, float]) -> pymunk.Body:
     shape.elasticity, shape.friction = 0.5, 0.0
     shape.filter = pymunk.ShapeFilter(group=pitch.ROBOT_GROUP)
     x, y, heading = pose
-    ahead = MARK[0] - pitch.BALL_RADIUS - PAW_RADIUS - SWING + _AWAKE
+    ahead = MARK[0] - pitch.BALL_RADIUS - PAW_RADIUS - PAW_TRAVEL + _PAW_START
     paw.position = x + ahead * math.cos(heading), y + ahead * math.sin(heading)
     paw.angle = heading
     return paw
 
 
-def swing(paw: pymunk.Body, ball: pymunk.Body, step: Callable[[float], None]) -> None:
-    """Swing the paw until the ball is on its way or the paw has passed.
+def swing_paw(paw: pymunk.Body, ball: pymunk.Body, step: Callable[[float], None]) -> None:
+    """Swing the paw until the ball moves or the paw has passed it.
 
-    A round paw meets a round ball, so the ball leaves along the line through their middles: one
-    that lies aside goes aside. One that lies farther ahead is met by a faster paw.
+    Paw and ball are round, so the ball leaves along the line through their centers. A ball that
+    lies farther ahead is hit by a faster paw.
 
     Parameters
     ----------
     paw, ball : pymunk.Body
-        In a space.
+        In the same space.
     step : callable
         Steps that space by a time (s).
     """
-    forward, way = paw.rotation_vector, _AWAKE
-    while way < 2 * SWING and ball.velocity.length < _RESTING:
-        speed = QUICKENING * way
+    forward, traveled = paw.rotation_vector, _PAW_START
+    while traveled < 2 * PAW_TRAVEL and ball.velocity.length < _RESTING:
+        speed = PAW_RATE * traveled
         paw.velocity = forward * speed
         step(_PAW_STRIDE / speed)
-        way += _PAW_STRIDE
+        traveled += _PAW_STRIDE
 
 
-def roll(ball: pymunk.Body, pull: float, step: Callable[[float], None]) -> list[tuple]:
-    """Let the ball roll until it rests, and return where it was on the way (mm).
+def roll_out(ball: pymunk.Body, acceleration: float, step: Callable[[float], None]) -> Path:
+    """Let the ball roll until it rests, and return its path (mm).
 
     Parameters
     ----------
     ball : pymunk.Body
         In a space.
-    pull : float
-        Sideways acceleration (mm/s^2), to the left of where the ball goes at first.
+    acceleration : float
+        Sideways acceleration (mm/s^2), to the left of the ball's first direction.
     step : callable
         Steps that space by a time (s).
     """
-    aside = ball.velocity.normalized().perpendicular() * (pull * ball.mass)
-    trail = [tuple(ball.position)]
+    force = ball.velocity.normalized().perpendicular() * (acceleration * ball.mass)
+    path: Path = [(ball.position.x, ball.position.y)]
     speed, bumped = ball.velocity.length, False
     while speed > _RESTING:
-        # pymunk starts on a contact with the last step's push, scaled up if the step is longer:
-        # so no longer step right after a bump.
+        # pymunk starts each contact with the impulse of the last step, scaled by the step's
+        # length. A longer step right after a bump would push the ball twice.
         if not bumped:
             dt = min(_LONGEST_STEP, _BALL_STRIDE / speed)
         for _ in range(_STEPS_A_LOOK):
-            ball.force = aside
+            ball.force = force
             step(dt)
-        trail.append(tuple(ball.position))
+        path.append((ball.position.x, ball.position.y))
         before, speed = speed, ball.velocity.length
         bumped = before - speed > 2 * _STEPS_A_LOOK * dt * pitch.BALL_DECELERATION
     ball.velocity = 0.0, 0.0
-    return trail
+    return path

@@ -1,20 +1,24 @@
-"""The motion engine: gaits, made of footsteps.
+"""The motion engine: every gait is made of footsteps.
 
-The left and the right legs take footsteps of their own length. All that a robot does on the
-ground is two numbers a cycle, and these functions say which; a way too long for one cycle takes
-several equal ones.
+A robot on the ground does nothing but choose two numbers each cycle: the lengths of the left and
+the right footstep. These functions compute them. A distance too long for one cycle takes several
+equal ones.
 """
 
 from __future__ import annotations
 
 import math
 
+import numpy as np
+from numpy.typing import NDArray
+
 from arkaq_edu import _checks
 from arkaq_edu.field import pitch
+from arkaq_edu.field.supervisor import ROBOT_START
 from arkaq_edu.field.world import LONGEST_FOOTSTEP, World
 
-# What the normal gait turns in a cycle: 131 degrees a second.
-MOST_TURN = math.radians(84)
+# The normal gait turns this much in a cycle: 131 degrees a second.
+LARGEST_TURN = math.radians(84)
 
 
 def footsteps(ahead: float, turn: float) -> tuple[float, float]:
@@ -32,7 +36,7 @@ def footsteps(ahead: float, turn: float) -> tuple[float, float]:
 
 
 def walk(world: World, distance: float) -> None:
-    """Walk straight ahead (mm), or back where `distance` is negative."""
+    """Walk straight ahead (mm), or back if `distance` is negative."""
     arc(world, distance, 0.0)
 
 
@@ -42,14 +46,16 @@ def turn(world: World, angle: float) -> None:
 
 
 def arc(world: World, distance: float, angle: float) -> None:
-    """Walk along an arc of a length (mm) that turns by an angle (rad, to the left).
+    """Walk along an arc.
 
     Parameters
     ----------
     world : World
-        The field; whole cycles pass in it, at least one.
-    distance, angle : float
-        The way, along the arc, and the turn.
+        The field. At least one whole cycle passes in it.
+    distance : float
+        Length of the arc (mm).
+    angle : float
+        The turn over the whole arc (rad, to the left).
 
     Raises
     ------
@@ -70,7 +76,7 @@ def arc(world: World, distance: float, angle: float) -> None:
     _checks.number("angle", angle)
     left, right = footsteps(distance, angle)
     longest = max(abs(left), abs(right)) / LONGEST_FOOTSTEP
-    cycles = max(1, math.ceil(max(longest, abs(angle) / MOST_TURN) - 1e-9))
+    cycles = max(1, math.ceil(max(longest, abs(angle) / LARGEST_TURN) - 1e-9))
     for _ in range(cycles):
         world.cycle(left / cycles, right / cycles)
 
@@ -80,23 +86,56 @@ def stop(world: World) -> None:
     world.cycle(0.0, 0.0)
 
 
+def straight_walk(world: World, cycles: int = 20) -> NDArray[np.float64]:
+    """Take equal footsteps of 100 mm up the field, and return the poses relative to the start.
+
+    Parameters
+    ----------
+    world : World
+        It is reset first.
+    cycles : int
+        Number of footstep cycles, >= 1.
+
+    Returns
+    -------
+    ndarray, shape (cycles + 1, 3)
+        x, y (mm) and heading (rad) before the first and after each cycle.
+
+    References
+    ----------
+    Thesis 5.1.3.1, figure 5.5.
+
+    Examples
+    --------
+    >>> x, y, heading = straight_walk(World(rng=0), cycles=10)[-1]
+    >>> bool(y > 0 > heading)  # drifts to the left, turns to the right
+    True
+    """
+    world.reset(ROBOT_START, (0.0, 1500.0))  # the ball is out of the way
+    poses = [world.pose]
+    for _ in range(_checks.integer("cycles", cycles, 1)):
+        world.cycle(100.0, 100.0)
+        poses.append(world.pose)
+    return np.array(poses) - ROBOT_START
+
+
 def look(world: World, pan: float) -> None:
-    """Pan the head (rad, to the left) and wait until pictures are good."""
+    """Pan the head (rad, to the left) and wait until pictures are sharp."""
     world.look(pan)
     if world.head.blurs:
         world.stand(world.unsettled)
 
 
 def kick(world: World) -> list[tuple[float, float]]:
-    """Kick with the paw and return the ball's way (mm) until it rests.
+    """Kick with the paw and return the ball's path (mm) until it rests.
 
     Examples
     --------
     >>> from arkaq_edu.field.kick import MARK
     >>> world = World(rng=0)
     >>> world.reset(robot=(0.0, 0.0, 0.0), ball=MARK)
-    >>> way = kick(world)
-    >>> way[0] == MARK, way[-1] == world.ball, 1800 < world.ball[0] < 2800
+    >>> path = kick(world)
+    >>> path[0] == MARK, path[-1] == world.ball, 1800 < world.ball[0] < 2800
     (True, True, True)
     """
     return world.swing_paw()

@@ -1,4 +1,4 @@
-"""The pitch: every length of the field, the ball and the robot, in one place, with its origin.
+"""The pitch: all lengths and masses of the field, the ball and the robot.
 
 The origin is the center spot. The x axis points at the sky-blue goal, y to the left of it, z up.
 """
@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-# The four-legged league's field of 2005: white lines on a green carpet with a wall round it.
+# The four-legged league's field of 2005: white lines on a green carpet surrounded by a wall.
 LENGTH, WIDTH = 5400.0, 3600.0
 CARPET_LENGTH, CARPET_WIDTH = 6000.0, 4000.0
 WALL_HEIGHT = 100.0
@@ -19,17 +19,17 @@ BOX_WIDTH, BOX_DEPTH = 1300.0, 650.0
 GOAL_WIDTH, GOAL_DEPTH, GOAL_HEIGHT = 800.0, 300.0, 300.0
 POST_RADIUS = 50.0
 
-# The ball: its rolling deceleration is a constant of a team's ball filter.
+# The rolling deceleration is taken from the ball filter of a team in that league.
 BALL_RADIUS, BALL_MASS = 42.0, 100.0
 BALL_DECELERATION = 250.0
 
-# The ERS-7: Sony's drawing; its mass with the battery in.
+# The ERS-7 as in Sony's drawing; the mass includes the battery.
 ROBOT_LENGTH, ROBOT_WIDTH = 317.0, 180.0
 ROBOT_MASS = 1650.0
-# Shapes of one group do not touch each other: the body and its own paw.
+# Shapes of one group do not collide: the body and its own paw.
 ROBOT_GROUP = 1
 
-NOTHING, GREEN, WHITE, YELLOW, BLUE, ORANGE, Gray = range(7)
+NOTHING, GREEN, WHITE, YELLOW, BLUE, ORANGE, GRAY = range(7)
 PALETTE = np.array(
     [
         (214, 224, 232),  # what lies beyond the wall
@@ -50,14 +50,15 @@ def panels() -> np.ndarray:
     Returns
     -------
     ndarray, shape (n, 6)
-        A row a face: x1, y1, x2, y2 of its foot, its height (mm), its color's index in `PALETTE`.
+        One row per face: x1, y1, x2, y2 of its foot, its height (mm), its color (an index into
+        `PALETTE`).
     """
     x, y = CARPET_LENGTH / 2, CARPET_WIDTH / 2
     rows = [
-        (-x, -y, x, -y, WALL_HEIGHT, Gray),
-        (-x, y, x, y, WALL_HEIGHT, Gray),
-        (-x, -y, -x, y, WALL_HEIGHT, Gray),
-        (x, -y, x, y, WALL_HEIGHT, Gray),
+        (-x, -y, x, -y, WALL_HEIGHT, GRAY),
+        (-x, y, x, y, WALL_HEIGHT, GRAY),
+        (-x, -y, -x, y, WALL_HEIGHT, GRAY),
+        (x, -y, x, y, WALL_HEIGHT, GRAY),
     ]
     for side, color in ((-1, YELLOW), (1, BLUE)):
         mouth, back, half = side * LENGTH / 2, side * (LENGTH / 2 + GOAL_DEPTH), GOAL_WIDTH / 2
@@ -65,7 +66,7 @@ def panels() -> np.ndarray:
         rows += [
             (mouth, -half, back, -half, GOAL_HEIGHT, color),
             (mouth, half, back, half, GOAL_HEIGHT, color),
-            # A millimeter before the wall, which would else hide it.
+            # A millimeter in front of the wall, which would hide it otherwise.
             (back - side, -half, back - side, half, GOAL_HEIGHT, color),
         ]
     return np.array(rows, dtype=np.float64)
@@ -77,8 +78,8 @@ def posts() -> np.ndarray:
     Returns
     -------
     ndarray, shape (4, 5)
-        A row a post: x, y of its axis, its radius, its height (mm), its color's index. The inner
-        faces of a goal's two posts are `GOAL_WIDTH` apart.
+        One row per post: x, y of its axis, its radius, its height (mm), its color (an index into
+        `PALETTE`). The inner faces of the two posts of a goal are `GOAL_WIDTH` apart.
     """
     y = GOAL_WIDTH / 2 + POST_RADIUS
     return np.array(
@@ -106,7 +107,7 @@ def lines() -> list[tuple[float, float, float, float]]:
 
 
 def bearing(x: float, y: float, heading: float, to_x: float, to_y: float) -> tuple[float, float]:
-    """Return how far (mm) and in which direction (rad) a point lies from a pose.
+    """Return distance (mm) and direction (rad, to the left) of a point from a pose.
 
     Examples
     --------

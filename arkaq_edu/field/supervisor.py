@@ -1,4 +1,4 @@
-"""The supervisor: it places the robot and the ball, and judges how an approach ended."""
+"""The supervisor of the first problem: it places robot and ball, and judges the approach."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from arkaq_edu import _checks
 from arkaq_edu.field.camera import FIELD_OF_VIEW
 from arkaq_edu.field.world import World
 
-# From here, looking up the field, every place that the camera covers lies on the carpet.
-START = (-2500.0, 0.0, 0.0)
-NEAREST, FARTHEST = 200.0, 4100.0
+# From this pose, looking up the field, everything that the camera can see lies on the carpet.
+ROBOT_START = (-2500.0, 0.0, 0.0)
+MIN_BALL_DISTANCE, MAX_BALL_DISTANCE = 200.0, 4100.0
 CLOSE_ENOUGH, STRAIGHT_ENOUGH = 500.0, 0.05
 CLOSE_REWARD, STRAIGHT_REWARD = 100.0, 50.0
 
@@ -21,7 +21,7 @@ Placement = Literal["area", "thesis"]
 
 
 class Verdict(NamedTuple):
-    """How things stand: the reward, and whether the ball is reached."""
+    """The reward, and whether the task is done."""
 
     reward: float
     is_success: bool
@@ -29,11 +29,11 @@ class Verdict(NamedTuple):
 
 def random_place(
     rng: np.random.Generator,
-    near: float = NEAREST,
-    far: float = FARTHEST,
+    near: float = MIN_BALL_DISTANCE,
+    far: float = MAX_BALL_DISTANCE,
     placement: Placement = "area",
 ) -> tuple[float, float]:
-    """Draw a place for the ball inside the robot's field of view.
+    """Draw a random place for the ball inside the robot's field of view.
 
     Parameters
     ----------
@@ -41,10 +41,9 @@ def random_place(
     near, far : float
         The nearest and farthest distance (mm).
     placement : {"area", "thesis"}
-        "thesis": eq 5.1, a uniform depth z, then a uniform x under the border of the view
-        triangle; the density of balls on the field falls as 1 / z. "area": uniform on the
-        field, for which the distance is the root of a uniform number. Both stay within [near,
-        far].
+        "thesis": eq 5.1, a uniform depth z, then a uniform x across the view triangle at that
+        depth. The density of balls on the field falls as 1 / z. "area": uniform on the field, so
+        the distance is the square root of a uniform number. Both stay within [near, far].
 
     Returns
     -------
@@ -66,7 +65,7 @@ def random_place(
     if placement == "area":
         distance = math.sqrt(rng.uniform(near**2, far**2))
         return distance, rng.uniform(-half, half)
-    while True:
+    while True:  # until the place lies within [near, far]
         z = rng.uniform(0.0, far)
         x = z * math.tan(half) * rng.uniform(0.0, 1.0) * rng.choice((-1.0, 1.0))
         distance = math.hypot(z, x)
@@ -75,12 +74,12 @@ def random_place(
 
 
 class Supervisor:
-    """The referee above the field.
+    """Places the ball for an approach, and rewards it.
 
     Parameters
     ----------
     near, far : float
-        Where it places the ball: distance from the robot (mm), in [200, 4100].
+        The least and greatest distance of the ball from the robot (mm), in [200, 4100].
     placement : {"area", "thesis"}
         See `random_place`.
 
@@ -97,28 +96,28 @@ class Supervisor:
     """
 
     def __init__(
-        self, near: float = 600.0, far: float = FARTHEST, placement: Placement = "area"
+        self, near: float = 600.0, far: float = MAX_BALL_DISTANCE, placement: Placement = "area"
     ) -> None:
-        self.near = _checks.number("near", near, NEAREST, FARTHEST)
-        self.far = _checks.number("far", far, self.near, FARTHEST)
+        self.near = _checks.number("near", near, MIN_BALL_DISTANCE, MAX_BALL_DISTANCE)
+        self.far = _checks.number("far", far, self.near, MAX_BALL_DISTANCE)
         if placement not in ("area", "thesis"):
             raise ValueError(f"placement must be 'area' or 'thesis', got {placement!r}")
         self.placement = placement
 
     def reset(self, world: World, rng: np.random.Generator) -> None:
-        """Put the robot back to its start and the ball to a random place it can see."""
+        """Put the robot at its start and the ball at a random place that it can see."""
         distance, orientation = random_place(rng, self.near, self.far, self.placement)
         self.place(world, distance, orientation)
 
     def place(self, world: World, distance: float, orientation: float) -> None:
-        """Put the robot back to its start and the ball where it is told (mm, rad)."""
-        x, y, heading = START
+        """Put the robot at its start and the ball at a distance (mm) and orientation (rad)."""
+        x, y, heading = ROBOT_START
         angle = heading + orientation
         ball = x + distance * math.cos(angle), y + distance * math.sin(angle)
-        world.reset(START, ball)
+        world.reset(ROBOT_START, ball)
 
     def judge(self, world: World) -> Verdict:
-        """Return the reward of the moment: +100 within 500 mm, +50 more within .05 rad."""
+        """Return the immediate reward: 100 within 500 mm of the ball, 50 more within .05 rad."""
         distance, orientation = world.ball_from_robot()
         if distance >= CLOSE_ENOUGH:
             return Verdict(0.0, False)

@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike, NDArray
 from arkaq_edu import _checks
 from arkaq_edu.field import Camera, Legs, World, bird_view, pitch, random_place
 from arkaq_edu.field.camera import FIELD_OF_VIEW
-from arkaq_edu.field.supervisor import FARTHEST, START, Placement
+from arkaq_edu.field.supervisor import MAX_BALL_DISTANCE, ROBOT_START, Placement
 from arkaq_edu.field.view import EXTENT
 from arkaq_edu.figures.drawing import style
 
@@ -197,7 +197,7 @@ def figure_5_3(ax: Axes | None = None, *, world: World | None = None) -> Picture
     """
     if world is None:
         world = World(rng=0)
-        world.reset(START, (-1300.0, 250.0))
+        world.reset(ROBOT_START, (-1300.0, 250.0))
     camera = Camera()
     seen, (distance, orientation) = camera.sighting(world), world.ball_from_robot()
     says = "no ball" if seen is None else f"{seen.distance:,.0f} mm, {seen.orientation:+.3f} rad"
@@ -298,7 +298,7 @@ def figure_5_7(ax: Axes | None = None) -> Picture:
     True
     """
     world = World(rng=0)
-    world.reset(START, (-200.0, 500.0))
+    world.reset(ROBOT_START, (-200.0, 500.0))
     half = FIELD_OF_VIEW / 2
     title = (
         f"the camera sees {half:.3f} rad ({math.degrees(half):.1f}°) to each side, "
@@ -362,7 +362,7 @@ def _plot_places(
         title=f"{name}: {(distance < 1000).mean():.0%} within 1 m",
     )
     rim = np.linspace(-FIELD_OF_VIEW / 2, FIELD_OF_VIEW / 2, 30)
-    border = FARTHEST * np.array([np.sin(rim), np.cos(rim)])
+    border = MAX_BALL_DISTANCE * np.array([np.sin(rim), np.cos(rim)])
     ax.plot(*np.pad(border, ((0, 0), (1, 1))), color=style.QUIET, lw=1)
     (marks,) = ax.plot(
         distance * np.sin(orientation), distance * np.cos(orientation),
@@ -374,12 +374,12 @@ def _plot_places(
 
 def _straight_walk(cycles: int, world: World) -> NDArray[np.float64]:
     """Return the poses of a walk of equal footsteps, counted from where it begins."""
-    world.reset(START, (0.0, 1500.0))
+    world.reset(ROBOT_START, (0.0, 1500.0))
     poses = [world.pose]
     for _ in range(_checks.integer("cycles", cycles, 1)):
         world.cycle(100.0, 100.0)
         poses.append(world.pose)
-    return np.array(poses) - START
+    return np.array(poses) - ROBOT_START
 
 
 def _side(y: float) -> str:

@@ -164,7 +164,7 @@ def test_the_goal_looks_the_same_without_numba():
         [
             sys.executable,
             "-c",
-            "import json; from tests.field.test_goal import goals_seen; print(json.dumps(goals_seen()))",
+            "import json; from tests.field import test_goal; print(json.dumps(test_goal.goals_seen()))",
         ],
         capture_output=True,
         text=True,

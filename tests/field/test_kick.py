@@ -9,7 +9,7 @@ from scipy import stats
 
 from arkaq_edu.experiments import load_kicks, record_kicks
 from arkaq_edu.field import GoalSupervisor, Kick, World, motion, pitch
-from arkaq_edu.field.kick import MARK, PAW_RADIUS, QUICKENING, SWING
+from arkaq_edu.field.kick import MARK, PAW_RADIUS, PAW_RATE, PAW_TRAVEL
 
 EXACT = Kick(spread=0.0, swerve=0.0)
 BOUNCE = 0.5 * 0.6  # of the paw and of the ball, as pymunk has it: their product
@@ -44,14 +44,14 @@ def test_a_ball_aside_goes_aside_along_the_line_of_the_middles():
         angle = math.asin((MARK[1] + left) / (pitch.BALL_RADIUS + PAW_RADIUS))
         assert direction == pytest.approx(angle, abs=0.02)
         # A heavy paw hands on its speed along that line, and the bounce on top of it.
-        touch = SWING + (1 - math.cos(angle)) * (pitch.BALL_RADIUS + PAW_RADIUS)
-        wanted = (1 + BOUNCE) * QUICKENING * touch * math.cos(angle)
+        touch = PAW_TRAVEL + (1 - math.cos(angle)) * (pitch.BALL_RADIUS + PAW_RADIUS)
+        wanted = (1 + BOUNCE) * PAW_RATE * touch * math.cos(angle)
         assert speed == pytest.approx(wanted, rel=0.05)
 
 
 def test_a_ball_farther_ahead_is_hit_by_a_faster_paw():
     speeds = [start_of(kicked(ahead=a))[0] for a in (-30.0, -20.0, -10.0, 0.0, 10.0, 20.0, 30.0)]
-    wanted = (1 + BOUNCE) * QUICKENING * (SWING + np.arange(-30, 31, 10))
+    wanted = (1 + BOUNCE) * PAW_RATE * (PAW_TRAVEL + np.arange(-30, 31, 10))
     assert speeds == pytest.approx(wanted, rel=0.08)
     assert np.all(np.diff(speeds) > 0)
 

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from arkaq_edu.field import Camera, Legs, Supervisor, World, bird_view, camera, pitch, random_place
-from arkaq_edu.field.supervisor import START
+from arkaq_edu.field.supervisor import ROBOT_START
 
 PERFECT = Legs(slide=0.0, pull=0.0, variation=0.0)
 STEP = 0.64 / 80  # s, the physics' substep
@@ -238,7 +238,7 @@ def test_a_wall_stops_the_robot_for_good():
 def test_the_ball_rolls_out_at_a_constant_deceleration(speed, angle):
     world = World(rng=0)
     world.reset((-2500.0, -1500.0, 0.0), (0.0, 0.0))
-    world.kick_off((speed * math.cos(angle), speed * math.sin(angle)))
+    world.roll_ball((speed * math.cos(angle), speed * math.sin(angle)))
     t = 0.0
     for _ in range(8):
         world.cycle(0.0, 0.0)
@@ -264,7 +264,7 @@ def test_a_fast_ball_passes_through_nothing():
         angle = rng.uniform(-math.pi, math.pi)
         world = World(rng=0)
         world.reset((0.0, 0.0, 0.0), (x, y))
-        world.kick_off((3000 * math.cos(angle), 3000 * math.sin(angle)))
+        world.roll_ball((3000 * math.cos(angle), 3000 * math.sin(angle)))
         depths = watched(world, lambda w=world: ball_inside_something(*w.ball))
         for _ in range(20):
             world.cycle(0.0, 0.0)
@@ -297,7 +297,7 @@ def walk_and_shoot(world):
     places = []
     for k in range(30):
         if k == 15:
-            world.kick_off((-900.0, 400.0))
+            world.roll_ball((-900.0, 400.0))
         world.cycle(*[(120, 120), (91, 109), (180, 100)][k % 3])
         places += [*world.pose, *world.ball]
     return np.array(places)
@@ -316,7 +316,7 @@ def test_the_same_seed_gives_the_same_trajectory_to_the_bit_in_any_process():
 def test_reset_leaves_nothing_behind():
     used = World(rng=11)
     walk_and_shoot(used)
-    used.kick_off((500.0, 0.0))
+    used.roll_ball((500.0, 0.0))
     used.rng = np.random.default_rng(3)
     assert np.array_equal(walk_and_shoot(used), walk_and_shoot(World(rng=3)))
 
@@ -335,9 +335,9 @@ def test_a_generator_or_its_seed_is_the_same():
         (lambda: World().reset((3001, 0, 0), (0, 0)), "robot.*3001"),
         (lambda: World().reset((0, 0, 0), (0, -2001)), "ball.*-2001"),
         (lambda: World().reset((0, 0, math.inf), (0, 0)), "robot"),
-        (lambda: World().kick_off((math.nan, 0)), "velocity"),
-        (lambda: World().put_ball(3001, 0), "ball must stand on the carpet.*3001"),
-        (lambda: World().put_ball(math.nan, 0), "ball must stand on the carpet.*nan"),
+        (lambda: World().roll_ball((math.nan, 0)), "velocity"),
+        (lambda: World().put_ball(3001, 0), "ball must be on the carpet.*3001"),
+        (lambda: World().put_ball(math.nan, 0), "ball must be on the carpet.*nan"),
         (lambda: Legs(variation=-0.1), "variation"),
         (lambda: Legs(slide=2), "slide"),
         (lambda: Legs(pull=0.1), "pull"),
@@ -362,9 +362,9 @@ def test_bad_input_is_refused_by_name(call, words):
 def seen_from_start(distance, orientation, eye=Camera()):  # noqa: B008
     """A look at a ball at a true distance and orientation from where the robot starts."""
     world = World(rng=0)
-    x, y, heading = START
+    x, y, heading = ROBOT_START
     angle = heading + orientation
-    world.reset(START, (x + distance * math.cos(angle), y + distance * math.sin(angle)))
+    world.reset(ROBOT_START, (x + distance * math.cos(angle), y + distance * math.sin(angle)))
     return eye.sighting(world)
 
 
@@ -536,9 +536,9 @@ def test_a_ball_behind_the_robot_is_not_seen():
 
 def test_the_picture_shows_the_field():
     world, eye = World(rng=0), Camera()
-    world.reset(START, (0.0, 1500.0))
+    world.reset(ROBOT_START, (0.0, 1500.0))
     up_the_field = eye.colors(world)
-    assert {pitch.GREEN, pitch.WHITE, pitch.BLUE, pitch.Gray} <= set(np.unique(up_the_field))
+    assert {pitch.GREEN, pitch.WHITE, pitch.BLUE, pitch.GRAY} <= set(np.unique(up_the_field))
     assert pitch.YELLOW not in up_the_field
     world.reset((0.0, 0.0, math.pi), (2000.0, 1500.0))
     back = eye.colors(world)
@@ -708,8 +708,8 @@ def test_rewards_at_their_boundaries(distance, orientation, reward, heading):
 def test_the_supervisor_puts_robot_and_ball_where_it_says():
     world, supervisor = World(rng=0), Supervisor(near=900.0, far=1000.0)
     supervisor.place(world, 800.0, 0.25)
-    assert world.pose == START
-    ahead, left = world.ball[0] - START[0], world.ball[1] - START[1]
+    assert world.pose == ROBOT_START
+    ahead, left = world.ball[0] - ROBOT_START[0], world.ball[1] - ROBOT_START[1]
     assert (math.hypot(ahead, left), math.atan2(left, ahead)) == pytest.approx((800.0, 0.25))
     assert world.ball_from_robot() == pytest.approx((800.0, 0.25))
     for seed in range(20):
@@ -721,7 +721,7 @@ def test_the_supervisor_puts_robot_and_ball_where_it_says():
 def test_the_bird_view_shows_the_ball_where_it_is():
     world = World(rng=0)
     for ball in [(1000.0, -900.0), (-300.0, 1500.0)]:
-        world.reset(START, ball)
+        world.reset(ROBOT_START, ball)
         picture = bird_view(world, width=600)
         assert (picture.shape, picture.dtype) == ((400, 600, 3), np.uint8)
         column, row = int((ball[0] + 3000) / 10), int((2000 - ball[1]) / 10)

@@ -1,0 +1,72 @@
+"""The solid things of the field, as pymunk bodies and shapes: walls, goals, robot and ball."""
+
+from __future__ import annotations
+
+import math
+
+import pymunk
+
+from arkaq_edu.field import pitch
+
+_WALL_THICKNESS = 100.0
+_GRAVITY = 9810.0  # mm/s^2
+
+
+def add_walls(space: pymunk.Space) -> None:
+    """Add the wall around the carpet, and the posts and side panels of both goals."""
+    x, y = pitch.CARPET_LENGTH / 2, pitch.CARPET_WIDTH / 2
+    static, r = space.static_body, _WALL_THICKNESS / 2
+    left, right, bottom, top = -x - r, x + r, -y - r, y + r
+    sides = [
+        ((left, bottom), (right, bottom)),
+        ((left, top), (right, top)),
+        ((left, bottom), (left, top)),
+        ((right, bottom), (right, top)),
+    ]
+    shapes: list[pymunk.Shape] = [pymunk.Segment(static, a, b, r) for a, b in sides]
+    for post_x, post_y, radius, _, _ in pitch.posts().tolist():
+        shapes.append(pymunk.Circle(static, radius, (post_x, post_y)))
+        # The side panel runs from the post to the wall behind it. It is as thick as the post, so
+        # that a fast ball cannot pass through it between two steps.
+        back = math.copysign(x, post_x), post_y
+        shapes.append(pymunk.Segment(static, (post_x, post_y), back, radius))
+    for shape in shapes:
+        shape.elasticity, shape.friction = 0.5, 0.3
+    space.add(*shapes)
+
+
+def add_robot(
+    space: pymunk.Space, x: float, y: float, heading: float
+) -> tuple[pymunk.Body, pymunk.Body]:
+    """Add the robot; return its body, and the control body whose velocity the body follows."""
+    mass, size = pitch.ROBOT_MASS, (pitch.ROBOT_LENGTH, pitch.ROBOT_WIDTH)
+    body = pymunk.Body(mass, pymunk.moment_for_box(mass, size))
+    body.position, body.angle = (x, y), heading
+    shape = pymunk.Poly.create_box(body, size)
+    shape.elasticity, shape.friction = 0.1, 0.4
+    shape.filter = pymunk.ShapeFilter(group=pitch.ROBOT_GROUP)
+    control = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    control.position, control.angle = body.position, heading
+    # The legs push only as hard as the friction of the paws allows, so a wall is stronger.
+    # max_bias = 0 keeps the joints from pulling the body back to the control body's place.
+    legs = pymunk.PivotJoint(control, body, (0, 0), (0, 0))
+    legs.max_bias, legs.max_force = 0, mass * _GRAVITY
+    turn = pymunk.GearJoint(control, body, 0.0, 1.0)
+    turn.max_bias, turn.max_force = 0, mass * _GRAVITY * pitch.ROBOT_WIDTH
+    space.add(body, shape, control, legs, turn)
+    return body, control
+
+
+def add_ball(space: pymunk.Space, x: float, y: float) -> pymunk.Body:
+    """Add a ball at rest. Its rolling resistance is a weak joint to the ground."""
+    mass, radius = pitch.BALL_MASS, pitch.BALL_RADIUS
+    body = pymunk.Body(mass, pymunk.moment_for_circle(mass, 0, radius))
+    body.position = x, y
+    shape = pymunk.Circle(body, radius)
+    shape.elasticity, shape.friction = 0.6, 0.3
+    rolling = pymunk.PivotJoint(space.static_body, body, (0, 0), (0, 0))
+    rolling.max_bias, rolling.max_force = 0, mass * pitch.BALL_DECELERATION
+    spinning = pymunk.GearJoint(space.static_body, body, 0.0, 1.0)
+    spinning.max_bias, spinning.max_force = 0, mass * pitch.BALL_DECELERATION * radius
+    space.add(body, shape, rolling, spinning)
+    return body
