@@ -1,64 +1,50 @@
-"""Checks of the students' answers: they say in what way an answer is wrong, and never give it.
+"""The exercises of the notebooks, by the name of what the student writes.
 
-Each check takes the student's function, tries it on fresh random inputs, and returns a line to be
-pleased about; where the answer is not right it raises `ExerciseError` with a line that helps.
+``exercises.turn.check(turn)`` tries an answer on fresh random cases. It prints praise, or raises
+`ExerciseError` with what is wrong, and never gives the answer away. ``exercises.turn.hint()``
+prints the next of three hints, and ``exercises.turn.solution()`` an answer.
+
+What an exercise is: `arkaq_edu.exercises.exercise`. Each chapter has a module of its own.
+
+Examples
+--------
+>>> from arkaq_edu import exercises
+>>> exercises.turn.check(lambda x, P, u, z, Q, R: (x + u, P + Q))
+Traceback (most recent call last):
+arkaq_edu.exercises.exercise.ExerciseError: the estimate is the prediction alone: the sighting \
+changes nothing
+>>> exercises.expected_reward.check(lambda b, R: b @ R)
+Right: a mean over what the state may be. It is the true expected reward.
+>>> exercises.expected_reward.solution()  # doctest: +ELLIPSIS
+def expected_reward(b, R):
+    ...
+    return b @ R
 """
 
-from arkaq_edu.exercises._ask import ExerciseError
-from arkaq_edu.exercises.approach import check_backup, check_boltzmann, check_reward
-from arkaq_edu.exercises.art import check_choose, check_match, check_norm_r
-from arkaq_edu.exercises.belief import (
-    check_chances,
-    check_correct,
-    check_expected_reward,
-    check_predict,
-)
-from arkaq_edu.exercises.field import check_ball, check_chance, check_pose
-from arkaq_edu.exercises.goal import check_kicks_needed, check_state_bounds, check_worth
-from arkaq_edu.exercises.kalman import check_combine, check_nis, check_turn
-from arkaq_edu.exercises.learning import (
-    check_discounted_sum,
-    check_epsilon_greedy,
-    check_finite_sum,
-    check_regret,
-)
-from arkaq_edu.exercises.mdp import check_bellman, check_greedy, check_rate, check_td
-from arkaq_edu.exercises.pomdp import check_best, check_lead, check_two_steps
-from arkaq_edu.exercises.segmentation import check_nearest, check_present, check_scale
+from arkaq_edu.exercises.approach import backup, boltzmann, reward
+from arkaq_edu.exercises.art import choose, match, norm_r
+from arkaq_edu.exercises.belief import correct, expected_reward, observation_chances, predict
+from arkaq_edu.exercises.exercise import Exercise, ExerciseError
+from arkaq_edu.exercises.field import ball, pose, scoring_chance
+from arkaq_edu.exercises.goal import kicks_needed, state_bounds, worth
+from arkaq_edu.exercises.kalman import combine, nis, turn
+from arkaq_edu.exercises.learning import discounted_sum, epsilon_greedy, finite_sum, regret
+from arkaq_edu.exercises.mdp import bellman, greedy, rate, td
+from arkaq_edu.exercises.pomdp import best, lead, two_steps
+from arkaq_edu.exercises.segmentation import nearest, present, scale
 
-__all__ = [
-    "ExerciseError",
-    "check_backup",
-    "check_ball",
-    "check_bellman",
-    "check_best",
-    "check_boltzmann",
-    "check_chance",
-    "check_chances",
-    "check_choose",
-    "check_combine",
-    "check_correct",
-    "check_discounted_sum",
-    "check_epsilon_greedy",
-    "check_expected_reward",
-    "check_finite_sum",
-    "check_greedy",
-    "check_kicks_needed",
-    "check_lead",
-    "check_match",
-    "check_nearest",
-    "check_nis",
-    "check_norm_r",
-    "check_pose",
-    "check_predict",
-    "check_present",
-    "check_rate",
-    "check_regret",
-    "check_reward",
-    "check_scale",
-    "check_state_bounds",
-    "check_td",
-    "check_turn",
-    "check_two_steps",
-    "check_worth",
-]
+#: The exercises of each chapter, in their order.
+CHAPTERS: dict[str, tuple[Exercise, ...]] = {
+    "learning": (finite_sum, discounted_sum, epsilon_greedy, regret),
+    "mdp": (bellman, greedy, td, rate),
+    "belief": (predict, correct, observation_chances, expected_reward),
+    "pomdp": (two_steps, best, lead),
+    "kalman": (combine, turn, nis),
+    "art": (match, choose, norm_r),
+    "segmentation": (scale, nearest, present),
+    "field": (pose, ball, scoring_chance),
+    "approach": (reward, boltzmann, backup),
+    "goal": (state_bounds, worth, kicks_needed),
+}
+
+__all__ = ["CHAPTERS", "Exercise", "ExerciseError", *(e.name for c in CHAPTERS.values() for e in c)]

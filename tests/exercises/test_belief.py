@@ -3,13 +3,8 @@
 import numpy as np
 import pytest
 
-from arkaq_edu.exercises import (
-    ExerciseError,
-    check_chances,
-    check_correct,
-    check_expected_reward,
-    check_predict,
-)
+from arkaq_edu import exercises
+from arkaq_edu.exercises import ExerciseError
 
 
 def predict(b, T):
@@ -31,16 +26,17 @@ def expected_reward(b, R):
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize(
-    ("check", "answer"),
+    ("exercise", "answer"),
     [
-        (check_predict, predict),
-        (check_correct, correct),
-        (check_chances, chances),
-        (check_expected_reward, expected_reward),
+        (exercises.predict, predict),
+        (exercises.correct, correct),
+        (exercises.observation_chances, chances),
+        (exercises.expected_reward, expected_reward),
     ],
 )
-def test_a_right_answer_is_praised(check, answer, seed):
-    assert check(answer, rng=seed).startswith("Right")
+def test_a_right_answer_is_praised(exercise, answer, seed, capsys):
+    exercise.check(answer, rng=seed)
+    assert capsys.readouterr().out == exercise.praise + "\n"
 
 
 def not_written(*_):
@@ -57,59 +53,71 @@ def normed(weights):
 
 
 WRONG = [
-    (check_predict, lambda b, T: T @ b, "backwards"),
-    (check_predict, lambda b, T: (T * b).sum(axis=1), "backwards"),
-    (check_predict, lambda b, T: b, "not moved"),
-    (check_predict, lambda b, T: (b[:, np.newaxis] * T).sum(axis=1), "not moved"),
-    (check_predict, lambda b, T: (b * T).sum(axis=0), "columns"),
-    (check_predict, lambda b, T: T[np.argmax(b)], "likeliest state alone"),
-    (check_predict, lambda b, T: T.mean(axis=0), "all starts alike"),
-    (check_predict, lambda b, T: T.sum(axis=0), "all starts alike"),
-    (check_predict, lambda b, T: b * np.diag(T), "stay where they are"),
-    (check_predict, lambda b, T: b[:, np.newaxis] * T, r"shape \(\d,\), not \(\d, \d\)"),
-    (check_predict, lambda b, T: 2 * (b @ T), "too large"),
-    (check_predict, lambda b, T: b @ T / 2, "too small"),
-    (check_predict, not_written, "still empty"),
-    (check_predict, lambda b, T: None, "return"),
-    (check_predict, lambda b, T: T[len(b)], "stopped with IndexError"),
-    (check_correct, lambda b, seen: b * seen, "sums to 1"),
-    (check_correct, lambda b, seen: b * seen / max(b * seen), "largest 1"),
-    (check_correct, lambda b, seen: b * seen / np.sqrt(((b * seen) ** 2).sum()), "length 1"),
-    (check_correct, lambda b, seen: normed(seen), "observation alone"),
-    (check_correct, lambda b, seen: seen, "observation alone"),
-    (check_correct, lambda b, seen: b, "changes nothing"),
-    (check_correct, lambda b, seen: normed(b + seen), "you add"),
-    (check_correct, lambda b, seen: (b + seen) / 2, "middle"),
-    (check_correct, lambda b, seen: normed(b * b * seen), "belief is counted twice"),
-    (check_correct, lambda b, seen: normed(b * seen**2), "observation is counted twice"),
-    (check_correct, lambda b, seen: normed(b * (1 - seen)), "not observed"),
-    (check_correct, lambda b, seen: normed(b / seen), "divide by the likelihood"),
-    (check_correct, lambda b, seen: 1.0 * (b * seen == max(b * seen)), "forget the others"),
-    (check_correct, lambda b, seen: (b * seen).sum(), r"shape \(\d,\), not \(\)"),
-    (check_correct, lambda b, seen: b / 0 * 0, "not all of it is a number"),
-    (check_correct, lambda b, seen: correct(b, seen) + 1, "too large"),
-    (check_correct, in_place, "copy"),
-    (check_chances, lambda b, T, O_a: b @ O_a, "first it acts"),
-    (check_chances, lambda b, T, O_a: T @ b @ O_a, "backwards"),
-    (check_chances, lambda b, T, O_a: O_a[np.argmax(b @ T)], "likeliest state alone"),
-    (check_chances, lambda b, T, O_a: O_a.mean(axis=0), "all states alike"),
-    (check_chances, lambda b, T, O_a: O_a.sum(axis=0), "all states alike"),
-    (check_chances, lambda b, T, O_a: b @ T, r"shape \(\d,\), not \(\d,\)"),
-    (check_chances, lambda b, T, O_a: 1 - chances(b, T, O_a), "is too"),
-    (check_expected_reward, lambda b, R: R[np.argmax(b)], "for certain"),
-    (check_expected_reward, lambda b, R: R.mean(axis=0), "all states alike"),
-    (check_expected_reward, lambda b, R: R.sum(axis=0), "all states alike"),
-    (check_expected_reward, lambda b, R: R.max(axis=0), "best state"),
-    (check_expected_reward, lambda b, R: (b[:, np.newaxis] * R).mean(axis=0), "sum to 1 already"),
-    (check_expected_reward, lambda b, R: (b @ R).max(), r"shape \(\d,\), not \(\)"),
-    (check_expected_reward, lambda b, R: b @ R - 1, "too small"),
-    (check_expected_reward, 3.0, "by its name"),
+    (exercises.predict, lambda b, T: T @ b, "backwards"),
+    (exercises.predict, lambda b, T: (T * b).sum(axis=1), "backwards"),
+    (exercises.predict, lambda b, T: b, "not moved"),
+    (exercises.predict, lambda b, T: (b[:, np.newaxis] * T).sum(axis=1), "not moved"),
+    (exercises.predict, lambda b, T: (b * T).sum(axis=0), "columns"),
+    (exercises.predict, lambda b, T: T[np.argmax(b)], "likeliest state alone"),
+    (exercises.predict, lambda b, T: T.mean(axis=0), "all starts alike"),
+    (exercises.predict, lambda b, T: T.sum(axis=0), "all starts alike"),
+    (exercises.predict, lambda b, T: b * np.diag(T), "stay where they are"),
+    (
+        exercises.predict,
+        lambda b, T: b[:, np.newaxis] * T,
+        r"not an array of shape \(\d, \d\)",
+    ),
+    (exercises.predict, lambda b, T: 2 * (b @ T), "too large"),
+    (exercises.predict, lambda b, T: b @ T / 2, "too small"),
+    (exercises.predict, not_written, "still empty"),
+    (exercises.predict, lambda b, T: None, "return"),
+    (exercises.predict, lambda b, T: T[len(b)], "stopped with IndexError"),
+    (exercises.correct, lambda b, seen: b * seen, "sums to 1"),
+    (exercises.correct, lambda b, seen: b * seen / max(b * seen), "largest 1"),
+    (exercises.correct, lambda b, seen: b * seen / np.sqrt(((b * seen) ** 2).sum()), "length 1"),
+    (exercises.correct, lambda b, seen: normed(seen), "observation alone"),
+    (exercises.correct, lambda b, seen: seen, "observation alone"),
+    (exercises.correct, lambda b, seen: b, "changes nothing"),
+    (exercises.correct, lambda b, seen: normed(b + seen), "you add"),
+    (exercises.correct, lambda b, seen: (b + seen) / 2, "take the mean"),
+    (exercises.correct, lambda b, seen: normed(b * b * seen), "belief is counted twice"),
+    (exercises.correct, lambda b, seen: normed(b * seen**2), "observation is counted twice"),
+    (exercises.correct, lambda b, seen: normed(b * (1 - seen)), "not observed"),
+    (exercises.correct, lambda b, seen: normed(b / seen), "divide by the likelihood"),
+    (exercises.correct, lambda b, seen: 1.0 * (b * seen == max(b * seen)), "forget the others"),
+    (exercises.correct, lambda b, seen: (b * seen).sum(), r"\d numbers, not one number"),
+    (exercises.correct, lambda b, seen: b / 0 * 0, "not all of it is a number"),
+    (exercises.correct, lambda b, seen: correct(b, seen) + 1, "too large"),
+    (exercises.correct, in_place, "copy"),
+    (exercises.observation_chances, lambda b, T, O_a: b @ O_a, "first it acts"),
+    (exercises.observation_chances, lambda b, T, O_a: T @ b @ O_a, "backwards"),
+    (
+        exercises.observation_chances,
+        lambda b, T, O_a: O_a[np.argmax(b @ T)],
+        "likeliest state alone",
+    ),
+    (exercises.observation_chances, lambda b, T, O_a: O_a.mean(axis=0), "all states alike"),
+    (exercises.observation_chances, lambda b, T, O_a: O_a.sum(axis=0), "all states alike"),
+    (exercises.observation_chances, lambda b, T, O_a: b @ T, r"\d numbers, not \d numbers"),
+    (exercises.observation_chances, lambda b, T, O_a: 1 - chances(b, T, O_a), "is too"),
+    (exercises.expected_reward, lambda b, R: R[np.argmax(b)], "as certain"),
+    (exercises.expected_reward, lambda b, R: R.mean(axis=0), "all states alike"),
+    (exercises.expected_reward, lambda b, R: R.sum(axis=0), "all states alike"),
+    (exercises.expected_reward, lambda b, R: R.max(axis=0), "best state"),
+    (
+        exercises.expected_reward,
+        lambda b, R: (b[:, np.newaxis] * R).mean(axis=0),
+        "sum to 1 already",
+    ),
+    (exercises.expected_reward, lambda b, R: (b @ R).max(), r"\d numbers, not one number"),
+    (exercises.expected_reward, lambda b, R: b @ R - 1, "too small"),
+    (exercises.expected_reward, 3.0, "by its name"),
 ]
 
 
 @pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize(("check", "answer", "hint"), WRONG)
+@pytest.mark.parametrize(("exercise", "answer", "hint"), WRONG)
 @pytest.mark.filterwarnings("ignore:(divide|invalid):RuntimeWarning")
-def test_a_wrong_answer_is_told_what_is_wrong(check, answer, hint, seed):
+def test_a_wrong_answer_is_told_what_is_wrong(exercise, answer, hint, seed):
     with pytest.raises(ExerciseError, match=hint):
-        check(answer, rng=seed)
+        exercise.check(answer, rng=seed)

@@ -1,11 +1,13 @@
 """The exercises as they stand in the notebooks: marked for an autograder, solvable, and blank."""
 
+import inspect
 from pathlib import Path
 
 import nbformat
 import numpy as np
 import pytest
 
+from arkaq_edu import exercises
 from arkaq_edu.exercises import ExerciseError
 
 FOLDER = Path(__file__).parents[2] / "notebooks"
@@ -49,3 +51,20 @@ def test_the_masters_answers_pass_and_the_students_blanks_fail_at_the_checks(cha
         else:
             with pytest.raises(ExerciseError, match="still empty"):
                 exec(cell.source, room)
+
+
+def test_each_check_cell_calls_its_exercise_and_gives_its_points():
+    checked = []
+    for cell in (cell for chapter in CHAPTERS for cell in CELLS[chapter]):
+        if not cell.metadata.nbgrader.grade:
+            names = {"np": np}
+            exec(cell.source, names)
+            continue
+        name = cell.source.splitlines()[-1].partition(".check(")[0].removeprefix("exercises.")
+        exercise = getattr(exercises, name)
+        assert cell.source.splitlines()[-1] == f"exercises.{name}.check({name})"
+        assert cell.metadata.nbgrader.points == exercise.points
+        assert inspect.signature(names[name]) == inspect.signature(exercise)
+        assert [output.text for output in cell.outputs] == [exercise.praise + "\n"]
+        checked.append(exercise)
+    assert checked == [exercise for chapter in exercises.CHAPTERS.values() for exercise in chapter]

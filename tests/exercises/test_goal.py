@@ -5,13 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from arkaq_edu import exercises
 from arkaq_edu.art import EuclideanART
-from arkaq_edu.exercises import (
-    ExerciseError,
-    check_kicks_needed,
-    check_state_bounds,
-    check_worth,
-)
+from arkaq_edu.exercises import ExerciseError
 
 
 def kicks_needed(p, q, sigmas):
@@ -32,11 +28,16 @@ def state_bounds(vigilance, width):
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize(
-    ("check", "answer"),
-    [(check_kicks_needed, kicks_needed), (check_worth, worth), (check_state_bounds, state_bounds)],
+    ("exercise", "answer"),
+    [
+        (exercises.kicks_needed, kicks_needed),
+        (exercises.worth, worth),
+        (exercises.state_bounds, state_bounds),
+    ],
 )
-def test_a_right_answer_is_praised(check, answer, seed):
-    assert check(answer, rng=seed).startswith("Right")
+def test_a_right_answer_is_praised(exercise, answer, seed, capsys):
+    exercise.check(answer, rng=seed)
+    assert capsys.readouterr().out == exercise.praise + "\n"
 
 
 def of_each(variance):
@@ -59,66 +60,70 @@ def not_written(*_):
 
 
 WRONG = [
-    (check_kicks_needed, lambda p, q, z: kicks_needed(p, q, z) - 1, "you round down"),
-    (check_kicks_needed, lambda p, q, z: 2 * kicks_needed(p, q, z), "both robots together"),
-    (check_kicks_needed, of_each(lambda p, q: p * (1 - p)), "only the first robot"),
-    (check_kicks_needed, of_each(lambda p, q: q * (1 - q)), "only the second robot"),
-    (check_kicks_needed, of_each(lambda p, q: p + q), "not p$"),
+    (exercises.kicks_needed, lambda p, q, z: kicks_needed(p, q, z) - 1, "you round down"),
+    (exercises.kicks_needed, lambda p, q, z: 2 * kicks_needed(p, q, z), "both robots together"),
+    (exercises.kicks_needed, of_each(lambda p, q: p * (1 - p)), "only the first robot"),
+    (exercises.kicks_needed, of_each(lambda p, q: q * (1 - q)), "only the second robot"),
+    (exercises.kicks_needed, of_each(lambda p, q: p + q), "not p$"),
     (
-        check_kicks_needed,
+        exercises.kicks_needed,
         of_each(lambda p, q: (math.sqrt(p - p * p) + math.sqrt(q - q * q)) ** 2),
-        "the variances are added",
+        "add their variances",
     ),
     (
-        check_kicks_needed,
+        exercises.kicks_needed,
         lambda p, q, z: math.ceil(z * (p * (1 - p) + q * (1 - q)) / (p - q) ** 2),
-        "number of them comes in squared",
+        "`sigmas` must be squared",
     ),
     (
-        check_kicks_needed,
+        exercises.kicks_needed,
         lambda p, q, z: math.ceil(z**2 * (p * (1 - p) + q * (1 - q)) / abs(p - q)),
-        "the difference comes in squared",
+        "the difference must be squared",
     ),
-    (check_kicks_needed, lambda p, q, z: z**2 / (p - q) ** 2, "kicks are whole"),
-    (check_kicks_needed, lambda p, q, z: kicks_needed(p, q, 2 * z), "0 of 12 tries"),
-    (check_kicks_needed, lambda p, q, z: [kicks_needed(p, q, z)], r"shape \(\), not \(1,\)"),
-    (check_kicks_needed, not_written, "still empty"),
-    (check_worth, lambda *case: worth(*case)[::-1], "the turn second"),
-    (check_worth, kicking(lambda p, g, c: 100 * p + c), "not worth 0: it is punished by -100$"),
-    (check_worth, kicking(lambda p, g, c: 100 * p), "and a kick takes a cycle"),
-    (check_worth, kicking(lambda p, g, c: 200 * p - 100), "a kick takes a cycle too"),
-    (check_worth, kicking(lambda p, g, c: 200 * p - 100 - c), "it is added"),
-    (check_worth, kicking(lambda p, g, c: g * (200 * p - 100 + c)), "what comes at once"),
-    (check_worth, turning(lambda n, t, g, c: c + worth(t, 0, g, c)[0]), "it is discounted"),
-    (check_worth, turning(lambda n, t, g, c: g * worth(t, 0, g, c)[0]), "the turn itself"),
-    (check_worth, turning(lambda n, t, g, c: c + g * worth(t, 0, g, 0)[0]), "a cycle too$"),
-    (check_worth, turning(lambda n, t, g, c: g * (c + worth(t, 0, g, c)[0])), "due at once"),
-    (check_worth, turning(lambda n, t, g, c: c + g * worth(n, 0, g, c)[0]), "another chance"),
+    (exercises.kicks_needed, lambda p, q, z: z**2 / (p - q) ** 2, "a number of kicks is whole"),
+    (exercises.kicks_needed, lambda p, q, z: kicks_needed(p, q, 2 * z), "0 of 12 tries"),
     (
-        check_worth,
+        exercises.kicks_needed,
+        lambda p, q, z: [kicks_needed(p, q, z)],
+        "not an array with one",
+    ),
+    (exercises.kicks_needed, not_written, "still empty"),
+    (exercises.worth, lambda *case: worth(*case)[::-1], "the turn second"),
+    (exercises.worth, kicking(lambda p, g, c: 100 * p + c), "not worth 0: it is punished by -100$"),
+    (exercises.worth, kicking(lambda p, g, c: 100 * p), "and a kick takes a cycle"),
+    (exercises.worth, kicking(lambda p, g, c: 200 * p - 100), "a kick takes a cycle too"),
+    (exercises.worth, kicking(lambda p, g, c: 200 * p - 100 - c), "it is added"),
+    (exercises.worth, kicking(lambda p, g, c: g * (200 * p - 100 + c)), "what comes at once"),
+    (exercises.worth, turning(lambda n, t, g, c: c + worth(t, 0, g, c)[0]), "it is discounted"),
+    (exercises.worth, turning(lambda n, t, g, c: g * worth(t, 0, g, c)[0]), "the turn itself"),
+    (exercises.worth, turning(lambda n, t, g, c: c + g * worth(t, 0, g, 0)[0]), "a cycle too$"),
+    (exercises.worth, turning(lambda n, t, g, c: g * (c + worth(t, 0, g, c)[0])), "due at once"),
+    (exercises.worth, turning(lambda n, t, g, c: c + g * worth(n, 0, g, c)[0]), "another chance"),
+    (
+        exercises.worth,
         turning(lambda n, t, g, c: c + g * worth(max(n, t), 0, g, c)[0]),
         "no choice left",
     ),
-    (check_worth, lambda n, t, g, c: worth(n, t, g, c)[0], r"shape \(2,\), not \(\)"),
-    (check_worth, not_written, "still empty"),
-    (check_state_bounds, lambda v, w: (w // (2 * v), w // v), "both are one too few"),
-    (check_state_bounds, lambda v, w: (w // v, 2 * w // v), "a factor of two"),
-    (check_state_bounds, lambda v, w: (w // v + 1, 2 * w // v + 1), "a factor of two"),
-    (check_state_bounds, lambda v, w: (w // (2 * v) + 1, w // v), "n - 1 gaps"),
-    (check_state_bounds, lambda v, w: (w // (2 * v), w // v + 1), "to the end of the interval"),
-    (check_state_bounds, lambda v, w: (w // v + 1, w // v + 1), "the same"),
-    (check_state_bounds, lambda v, w: (w / (2 * v), w / v), "centers are whole"),
-    (check_state_bounds, lambda v, w: state_bounds(v, w)[::-1], "the fewest come first"),
-    (check_state_bounds, lambda v, w: state_bounds(2 * v, w), "0 of 12 tries"),
-    (check_state_bounds, not_written, "still empty"),
+    (exercises.worth, lambda n, t, g, c: worth(n, t, g, c)[0], "two numbers: .*not one"),
+    (exercises.worth, not_written, "still empty"),
+    (exercises.state_bounds, lambda v, w: (w // (2 * v), w // v), "both are one too few"),
+    (exercises.state_bounds, lambda v, w: (w // v, 2 * w // v), "a factor of about two"),
+    (exercises.state_bounds, lambda v, w: (w // v + 1, 2 * w // v + 1), "a factor of about two"),
+    (exercises.state_bounds, lambda v, w: (w // (2 * v) + 1, w // v), "n - 1 gaps"),
+    (exercises.state_bounds, lambda v, w: (w // (2 * v), w // v + 1), "to the end of the interval"),
+    (exercises.state_bounds, lambda v, w: (w // v + 1, w // v + 1), "the same"),
+    (exercises.state_bounds, lambda v, w: (w / (2 * v), w / v), "a number of centers is whole"),
+    (exercises.state_bounds, lambda v, w: state_bounds(v, w)[::-1], "the fewest come first"),
+    (exercises.state_bounds, lambda v, w: state_bounds(2 * v, w), "0 of 12 tries"),
+    (exercises.state_bounds, not_written, "still empty"),
 ]
 
 
 @pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize(("check", "answer", "words"), WRONG)
-def test_a_wrong_answer_is_told_in_what_way(check, answer, words, seed):
+@pytest.mark.parametrize(("exercise", "answer", "words"), WRONG)
+def test_a_wrong_answer_is_told_in_what_way(exercise, answer, words, seed):
     with pytest.raises(ExerciseError, match=words):
-        check(answer, rng=seed)
+        exercise.check(answer, rng=seed)
 
 
 @pytest.mark.parametrize("seed", range(5))

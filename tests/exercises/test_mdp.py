@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from arkaq_edu.exercises import ExerciseError, check_bellman, check_greedy, check_rate, check_td
+from arkaq_edu import exercises
+from arkaq_edu.exercises import ExerciseError
 
 
 def q(T, R, gamma, V):
@@ -27,10 +28,12 @@ def td(v, r, v_next, ended, alpha, gamma):
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize(
-    ("check", "answer"), [(check_bellman, bellman), (check_greedy, greedy), (check_td, td)]
+    ("exercise", "answer"),
+    [(exercises.bellman, bellman), (exercises.greedy, greedy), (exercises.td, td)],
 )
-def test_a_right_answer_is_praised(check, answer, seed):
-    assert check(answer, rng=seed).startswith("Right")
+def test_a_right_answer_is_praised(exercise, answer, seed, capsys):
+    exercise.check(answer, rng=seed)
+    assert capsys.readouterr().out == exercise.praise + "\n"
 
 
 @pytest.mark.parametrize(
@@ -46,8 +49,9 @@ def test_a_right_answer_is_praised(check, answer, seed):
         lambda n: 0.2 if n < 1000 else 0.2 * 1000 / n,
     ],
 )
-def test_a_rate_that_forgets_and_settles_is_praised(rate):
-    assert check_rate(rate).startswith("Right")
+def test_a_rate_that_forgets_and_settles_is_praised(rate, capsys):
+    exercises.rate.check(rate)
+    assert capsys.readouterr().out.startswith("Right")
 
 
 def not_written(*_):
@@ -64,57 +68,77 @@ def after_an_end(answer):
 
 
 WRONG = [
-    (check_bellman, lambda T, R, gamma, V, s: max(R[s]), "of now alone"),
-    (check_bellman, printed_2_7, "2.7 as printed"),
-    (check_bellman, lambda T, R, g, V, s: g * bellman(T, R, 1, V, s), "reward of now is disc"),
-    (check_bellman, lambda T, R, g, V, s: bellman(T, 0 * R, g, V, s), "of now is missing"),
-    (check_bellman, lambda T, R, g, V, s: bellman(T, R, 1, V, s), "follows is not discounted"),
-    (check_bellman, lambda T, R, g, V, s: max(R[s]) + bellman(T, 0 * R, g, V, s), "two maxima"),
-    (check_bellman, lambda T, R, g, V, s: np.mean(q(T, R, g, V)[s]), "mean over the actions"),
-    (check_bellman, lambda T, R, g, V, s: np.sum(q(T, R, g, V)[s]), "add the actions up"),
-    (check_bellman, lambda T, R, g, V, s: min(q(T, R, g, V)[s]), "worst action"),
-    (check_bellman, lambda T, R, g, V, s: np.argmax(q(T, R, g, V)[s]), "how much it is worth"),
-    (check_bellman, lambda T, R, g, V, s: q(T, R, g, V)[s], "take the best of them"),
-    (check_bellman, lambda T, R, g, V, s: max(R[s]) + g * max(V), "hope for the best state"),
-    (check_bellman, lambda T, R, g, V, s: max(R[s]) + g * sum(V), "values that may follow"),
-    (check_bellman, lambda T, R, g, V, s: bellman(T.transpose(0, 2, 1), R, g, V, s), "come from"),
-    (check_bellman, lambda *case: bellman(*case) + 1, "right in 0 of 20 tries; one of yours, .* l"),
-    (check_bellman, lambda *case: bellman(*case) - 1, "too small"),
-    (check_bellman, lambda T, R, V: 0, "stopped with TypeError"),
-    (check_bellman, not_written, "still empty"),
-    (check_greedy, lambda T, R, g, V: [np.argmax(row) for row in R], "equation 2.6"),
-    (check_greedy, lambda T, R, g, V: greedy(T, 0 * R, g, V), "the reward is missing"),
-    (check_greedy, lambda T, R, g, V: np.max(q(T, R, g, V), axis=1), "values of the best"),
-    (check_greedy, lambda T, R, g, V: q(T, R, g, V), "which of a row"),
-    (check_greedy, lambda T, R, g, V: np.argmin(q(T, R, g, V), axis=1), "worst"),
-    (check_greedy, lambda T, R, g, V: np.argmax(q(T, R, g, V), axis=0), "best state of each"),
-    (check_greedy, lambda *case: greedy(*case) + 1, "count from 1"),
-    (check_greedy, lambda T, R, g, V: greedy(T, R, 1, V), "not discounted"),
-    (check_greedy, lambda T, R, g, V: greedy(T.transpose(0, 2, 1), R, g, V), "come from"),
-    (check_greedy, lambda T, R, g, V: 0, r"shape \(\d,\), not \(\)"),
-    (check_greedy, lambda *case: None, "return"),
-    (check_td, lambda v, r, n, end, a, g: r + g * n, "in place of the old"),
-    (check_td, lambda v, r, n, end, a, g: a * (r + g * n - v), "add it to the old"),
-    (check_td, lambda v, r, n, end, a, g: v + a * (r + g * n), "on top of the old"),
-    (check_td, lambda v, r, n, end, a, g: td(v, r, n, end, a, 1), "not discounted"),
-    (check_td, lambda v, r, n, end, a, g: td(v, r, n, True, a, g), "the reward is all"),
-    (check_td, lambda v, r, n, end, a, g: td(v, 0, n, end, a, g), "reward is missing"),
-    (check_td, lambda v, r, n, end, a, g: td(v, g * r, n, end, a, g), "reward is discounted"),
-    (check_td, lambda v, r, n, end, a, g: td(v, r, n, end, 1 - a, g), "changed places"),
-    (check_td, lambda v, r, n, end, a, g: 2 * v - td(v, r, n, end, a, g), "away from"),
-    (check_td, lambda v, r, n, end, a, g: td(v, r, n, False, a, g), "no next value belongs"),
-    (check_td, after_an_end(lambda v, r, n, a, g: v), "learn nothing"),
-    (check_td, after_an_end(lambda v, r, n, a, g: r), "too, only a step"),
-    (check_td, after_an_end(lambda v, r, n, a, g: 3 * v), "too large"),
-    (check_td, 3.0, "by its name"),
+    (exercises.bellman, lambda T, R, gamma, V, s: max(R[s]), "only the best immediate"),
+    (exercises.bellman, printed_2_7, "2.7 as printed"),
+    (
+        exercises.bellman,
+        lambda T, R, g, V, s: g * bellman(T, R, 1, V, s),
+        "reward is discounted too",
+    ),
+    (
+        exercises.bellman,
+        lambda T, R, g, V, s: bellman(T, 0 * R, g, V, s),
+        "reward is missing",
+    ),
+    (exercises.bellman, lambda T, R, g, V, s: bellman(T, R, 1, V, s), "follows is not discounted"),
+    (exercises.bellman, lambda T, R, g, V, s: max(R[s]) + bellman(T, 0 * R, g, V, s), "two maxima"),
+    (exercises.bellman, lambda T, R, g, V, s: np.mean(q(T, R, g, V)[s]), "mean over the actions"),
+    (exercises.bellman, lambda T, R, g, V, s: np.sum(q(T, R, g, V)[s]), "add the actions up"),
+    (exercises.bellman, lambda T, R, g, V, s: min(q(T, R, g, V)[s]), "worst action"),
+    (exercises.bellman, lambda T, R, g, V, s: np.argmax(q(T, R, g, V)[s]), "how much it is worth"),
+    (exercises.bellman, lambda T, R, g, V, s: q(T, R, g, V)[s], "take the best of them"),
+    (exercises.bellman, lambda T, R, g, V, s: max(R[s]) + g * max(V), "hope for the best state"),
+    (exercises.bellman, lambda T, R, g, V, s: max(R[s]) + g * sum(V), "values that may follow"),
+    (
+        exercises.bellman,
+        lambda T, R, g, V, s: bellman(T.transpose(0, 2, 1), R, g, V, s),
+        "states before",
+    ),
+    (
+        exercises.bellman,
+        lambda *case: bellman(*case) + 1,
+        "right in 0 of 20 tries; one of yours, .* l",
+    ),
+    (exercises.bellman, lambda *case: bellman(*case) - 1, "too small"),
+    (exercises.bellman, lambda T, R, V: 0, "stopped with TypeError"),
+    (exercises.bellman, not_written, "still empty"),
+    (exercises.greedy, lambda T, R, g, V: [np.argmax(row) for row in R], "equation 2.6"),
+    (exercises.greedy, lambda T, R, g, V: greedy(T, 0 * R, g, V), "the reward is missing"),
+    (exercises.greedy, lambda T, R, g, V: np.max(q(T, R, g, V), axis=1), "values of the best"),
+    (exercises.greedy, lambda T, R, g, V: q(T, R, g, V), "which of a row"),
+    (exercises.greedy, lambda T, R, g, V: np.argmin(q(T, R, g, V), axis=1), "worst"),
+    (exercises.greedy, lambda T, R, g, V: np.argmax(q(T, R, g, V), axis=0), "best state of each"),
+    (exercises.greedy, lambda *case: greedy(*case) + 1, "count from 1"),
+    (exercises.greedy, lambda T, R, g, V: greedy(T, R, 1, V), "not discounted"),
+    (
+        exercises.greedy,
+        lambda T, R, g, V: greedy(T.transpose(0, 2, 1), R, g, V),
+        "states before",
+    ),
+    (exercises.greedy, lambda T, R, g, V: 0, r"\d numbers, not one number"),
+    (exercises.greedy, lambda *case: None, "return"),
+    (exercises.td, lambda v, r, n, end, a, g: r + g * n, "in place of the old"),
+    (exercises.td, lambda v, r, n, end, a, g: a * (r + g * n - v), "add it to the old"),
+    (exercises.td, lambda v, r, n, end, a, g: v + a * (r + g * n), "on top of the old"),
+    (exercises.td, lambda v, r, n, end, a, g: td(v, r, n, end, a, 1), "not discounted"),
+    (exercises.td, lambda v, r, n, end, a, g: td(v, r, n, True, a, g), "only the reward counts"),
+    (exercises.td, lambda v, r, n, end, a, g: td(v, 0, n, end, a, g), "reward is missing"),
+    (exercises.td, lambda v, r, n, end, a, g: td(v, g * r, n, end, a, g), "reward is discounted"),
+    (exercises.td, lambda v, r, n, end, a, g: td(v, r, n, end, 1 - a, g), "changed places"),
+    (exercises.td, lambda v, r, n, end, a, g: 2 * v - td(v, r, n, end, a, g), "away from"),
+    (exercises.td, lambda v, r, n, end, a, g: td(v, r, n, False, a, g), "leave the next value out"),
+    (exercises.td, after_an_end(lambda v, r, n, a, g: v), "learn nothing"),
+    (exercises.td, after_an_end(lambda v, r, n, a, g: r), "too, go only a step"),
+    (exercises.td, after_an_end(lambda v, r, n, a, g: 3 * v), "too large"),
+    (exercises.td, 3.0, "by its name"),
 ]
 
 
 @pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize(("check", "answer", "hint"), WRONG)
-def test_a_wrong_answer_is_told_what_is_wrong(check, answer, hint, seed):
+@pytest.mark.parametrize(("exercise", "answer", "hint"), WRONG)
+def test_a_wrong_answer_is_told_what_is_wrong(exercise, answer, hint, seed):
     with pytest.raises(ExerciseError, match=hint):
-        check(answer, rng=seed)
+        exercise.check(answer, rng=seed)
 
 
 @pytest.mark.parametrize(
@@ -124,11 +148,11 @@ def test_a_wrong_answer_is_told_what_is_wrong(check, answer, hint, seed):
         (lambda n: 1.0, "never settles: after 100,000 visits 100%"),
         (lambda n: n**-0.3, "never settles"),
         (lambda n: n**-0.5, "never settles"),
-        (lambda n: 1 / n**2, "stands still too soon"),
+        (lambda n: 1 / n**2, "stops too soon"),
         (lambda n: 0.5**n, "29% of the value is still what it began with"),
         (lambda n: 0.1 / n, "of the value is still what it began with"),
         (lambda n: 0.0, "100% of the value is still"),
-        (lambda n: 2 / n, r"rate\(1\) is 2: a learning rate lies from 0 to 1"),
+        (lambda n: 2 / n, r"rate\(1\) is 2: a learning rate lies between 0 and 1"),
         (lambda n: 1 - n / 40_000, r"rate\(40001\) is -"),
         (lambda n: 1 / (n - 1), r"\(1\) stopped with ZeroDivisionError"),
         (lambda n: "fast", "should return numbers"),
@@ -138,7 +162,7 @@ def test_a_wrong_answer_is_told_what_is_wrong(check, answer, hint, seed):
 )
 def test_a_wrong_rate_is_told_what_is_wrong(rate, hint):
     with pytest.raises(ExerciseError, match=hint):
-        check_rate(rate)
+        exercises.rate.check(rate)
 
 
 def test_what_the_check_computes_is_what_twenty_learners_do():

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from arkaq_edu.exercises import ExerciseError, check_best, check_lead, check_two_steps
+from arkaq_edu import exercises
+from arkaq_edu.exercises import ExerciseError
 from arkaq_edu.pomdp import POMDP, PolicyTree, ValueFunction, tree_value
 
 
@@ -36,10 +37,12 @@ def not_written(*_):
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize(
-    ("check", "answer"), [(check_two_steps, two_steps), (check_best, best), (check_lead, lead)]
+    ("exercise", "answer"),
+    [(exercises.two_steps, two_steps), (exercises.best, best), (exercises.lead, lead)],
 )
-def test_a_right_answer_is_praised(check, answer, seed):
-    assert check(answer, rng=seed).startswith("Right")
+def test_a_right_answer_is_praised(exercise, answer, seed, capsys):
+    exercise.check(answer, rng=seed)
+    assert capsys.readouterr().out == exercise.praise + "\n"
 
 
 def loops(T_a, O_a, R, gamma, a, after):
@@ -56,7 +59,7 @@ def loops(T_a, O_a, R, gamma, a, after):
 
 
 def test_a_list_from_loops_will_do():
-    assert check_two_steps(loops, rng=0).startswith("Right")
+    exercises.two_steps.check(loops, rng=0)
 
 
 def later(T_a, O_a, R, a, after):
@@ -64,88 +67,104 @@ def later(T_a, O_a, R, a, after):
 
 
 WRONG = [
-    (check_two_steps, not_written, "still empty"),
-    (check_two_steps, lambda T_a, O_a, R, g, a, f: R[:, a], "second step"),
+    (exercises.two_steps, not_written, "still empty"),
+    (exercises.two_steps, lambda T_a, O_a, R, g, a, f: R[:, a], "second step"),
     (
-        check_two_steps,
+        exercises.two_steps,
         lambda T_a, O_a, R, g, a, f: g * later(T_a, O_a, R, a, f),
         "first action's reward",
     ),
     (
-        check_two_steps,
+        exercises.two_steps,
         lambda T_a, O_a, R, g, a, f: R[:, a] + later(T_a, O_a, R, a, f),
         "but the discount",
     ),
     (
-        check_two_steps,
+        exercises.two_steps,
         lambda T_a, O_a, R, g, a, f: g * two_steps_free(T_a, O_a, R, 1, a, f),
         "only",
     ),
     (
-        check_two_steps,
+        exercises.two_steps,
         lambda T_a, O_a, R, g, a, f: R[:, a] + g * (O_a * R[:, f]).sum(1),
         "not moved",
     ),
     (
-        check_two_steps,
+        exercises.two_steps,
         lambda T_a, O_a, R, g, a, f: two_steps_free(T_a.T, O_a, R, g, a, f),
         "backwards",
     ),
     (
-        check_two_steps,
+        exercises.two_steps,
         lambda T_a, O_a, R, g, a, f: R[:, a] + g * (O_a * (T_a @ R[:, f])).sum(1),
         "before the state has moved",
     ),
     (
-        check_two_steps,
+        exercises.two_steps,
         lambda T_a, O_a, R, g, a, f: R[:, a] + g * ((T_a @ O_a) * R[:, f]).sum(1),
         "for the state at the start",
     ),
     (
-        check_two_steps,
+        exercises.two_steps,
         lambda T_a, O_a, R, g, a, f: R[:, a] + g * T_a @ R[:, f].mean(1),
         "all observations alike",
     ),
     (
-        check_two_steps,
+        exercises.two_steps,
         lambda T_a, O_a, R, g, a, f: R[:, a] + g * T_a @ R[:, f].sum(1),
         "all observations alike",
     ),
     (
-        check_two_steps,
+        exercises.two_steps,
         lambda T_a, O_a, R, g, a, f: R[:, a] + g * T_a @ R.max(axis=1),
         "the plan says",
     ),
-    (check_two_steps, lambda *given: two_steps(*given).sum(), "shape"),
-    (check_two_steps, lambda *given: two_steps(*given) + 1, "too large"),
-    (check_best, not_written, "still empty"),
-    (check_best, lambda b, alphas, actions: (alphas @ b).max(), "shape"),
-    (check_best, other_value(lambda b, alphas, actions: (alphas @ b).min()), "worst plan"),
-    (check_best, other_value(lambda b, alphas, actions: alphas.max(axis=0) @ b), "could be seen"),
-    (check_best, other_value(lambda b, alphas, _: alphas[:, b.argmax()].max()), "likeliest"),
-    (check_best, other_value(lambda b, alphas, actions: alphas.max()), "could happen"),
-    (check_best, other_value(lambda b, alphas, actions: (alphas @ b).mean()), "may choose"),
-    (check_best, other_value(lambda b, alphas, _: alphas.mean(axis=1).max()), "states alike"),
-    (check_best, lambda *given: best(*given)[::-1], "comes first"),
-    (check_best, other_action(lambda b, alphas, actions: (alphas @ b).argmax()), "number of the"),
+    (exercises.two_steps, lambda *given: two_steps(*given).sum(), "for each state.*not one"),
+    (exercises.two_steps, lambda *given: two_steps(*given) + 1, "too large"),
+    (exercises.best, not_written, "still empty"),
+    (exercises.best, lambda b, alphas, actions: (alphas @ b).max(), "value and action, not one"),
+    (exercises.best, other_value(lambda b, alphas, actions: (alphas @ b).min()), "worst plan"),
     (
-        check_best,
+        exercises.best,
+        other_value(lambda b, alphas, actions: alphas.max(axis=0) @ b),
+        "as if the robot saw",
+    ),
+    (exercises.best, other_value(lambda b, alphas, _: alphas[:, b.argmax()].max()), "likeliest"),
+    (exercises.best, other_value(lambda b, alphas, actions: alphas.max()), "could happen"),
+    (exercises.best, other_value(lambda b, alphas, actions: (alphas @ b).mean()), "may choose"),
+    (exercises.best, other_value(lambda b, alphas, _: alphas.mean(axis=1).max()), "states alike"),
+    (exercises.best, lambda *given: best(*given)[::-1], "comes first"),
+    (
+        exercises.best,
+        other_action(lambda b, alphas, actions: (alphas @ b).argmax()),
+        "number of the",
+    ),
+    (
+        exercises.best,
         other_action(lambda b, alphas, actions: actions[alphas[:, b.argmax()].argmax()]),
         "for the likeliest state",
     ),
-    (check_best, other_action(lambda b, alphas, actions: actions.max()), "greatest number"),
-    (check_best, other_action(lambda *given: best(*given)[1] + 1), "too large"),
-    (check_lead, not_written, "still empty"),
-    (check_lead, lambda *given: -lead(*given), "sign"),
-    (check_lead, lambda b, alpha, others: b @ alpha - (others @ b).min(), "worst of the others"),
-    (check_lead, lambda b, alpha, others: b @ alpha - (others @ b).mean(), "mean of the others"),
-    (check_lead, lambda b, alpha, others: b @ (alpha - others.max(axis=0)), "own rival"),
-    (check_lead, lambda b, alpha, others: (alpha - others).min(), "never used"),
-    (check_lead, lambda b, alpha, others: b @ alpha, "what the plan earns"),
-    (check_lead, lambda b, alpha, others: (others @ b).max(), "how far"),
-    (check_lead, lambda *given: lead(*given) > 0, "by how much"),
-    (check_lead, lambda b, alpha, others: others @ b - b @ alpha, "shape"),
-    (check_lead, lambda b, alpha, others: alpha.sort(), "returned nothing"),
+    (exercises.best, other_action(lambda b, alphas, actions: actions.max()), "greatest number"),
+    (exercises.best, other_action(lambda *given: best(*given)[1] + 1), "too large"),
+    (exercises.lead, not_written, "still empty"),
+    (exercises.lead, lambda *given: -lead(*given), "sign"),
+    (
+        exercises.lead,
+        lambda b, alpha, others: b @ alpha - (others @ b).min(),
+        "worst of the others",
+    ),
+    (
+        exercises.lead,
+        lambda b, alpha, others: b @ alpha - (others @ b).mean(),
+        "mean of the others",
+    ),
+    (exercises.lead, lambda b, alpha, others: b @ (alpha - others.max(axis=0)), "own rival"),
+    (exercises.lead, lambda b, alpha, others: (alpha - others).min(), "never used"),
+    (exercises.lead, lambda b, alpha, others: b @ alpha, "what the plan earns"),
+    (exercises.lead, lambda b, alpha, others: (others @ b).max(), "how far"),
+    (exercises.lead, lambda *given: lead(*given) > 0, "by how much"),
+    (exercises.lead, lambda b, alpha, others: others @ b - b @ alpha, "one number, not"),
+    (exercises.lead, lambda b, alpha, others: alpha.sort(), "returned nothing"),
 ]
 
 
@@ -154,7 +173,7 @@ def two_steps_free(T_a, O_a, R, gamma, a, after):
 
 
 @pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize(("check", "answer", "hint"), WRONG)
-def test_a_wrong_answer_is_told_what_is_wrong(check, answer, hint, seed):
+@pytest.mark.parametrize(("exercise", "answer", "hint"), WRONG)
+def test_a_wrong_answer_is_told_what_is_wrong(exercise, answer, hint, seed):
     with pytest.raises(ExerciseError, match=hint):
-        check(answer, rng=seed)
+        exercise.check(answer, rng=seed)
