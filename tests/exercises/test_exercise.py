@@ -25,7 +25,7 @@ def rules():
                     yield exercise, dataclasses.replace(part, cases=cases), expression, words
 
 
-@pytest.mark.parametrize(("exercise", "part", "expression", "words"), rules())
+@pytest.mark.parametrize(("exercise", "part", "expression", "words"), list(rules()))
 def test_a_known_wrong_answer_gets_its_own_words(exercise, part, expression, words):
     wrong = exercise.function(expression)
 
