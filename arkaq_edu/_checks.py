@@ -28,16 +28,15 @@ def number(
     Traceback (most recent call last):
     ValueError: vigilance must be a number in (0, 1], got -2
     """
-    left, right = "(" if open_low else "[", ")" if open_high else "]"
-    allowed = f"a number in {left}{low:g}, {high:g}{right}"
-    if low == -math.inf and high == math.inf:
-        allowed = "a finite number"
     try:
         x = float(value)
     except (TypeError, ValueError):
-        raise ValueError(f"{name} must be {allowed}, got {value!r}") from None
+        x = math.nan
     inside = (low < x if open_low else low <= x) and (x < high if open_high else x <= high)
-    if math.isnan(x) or not inside or (allowed == "a finite number" and math.isinf(x)):
+    unbounded = low == -math.inf and high == math.inf
+    if not inside or (unbounded and math.isinf(x)):
+        left, right = "(" if open_low else "[", ")" if open_high else "]"
+        allowed = "a finite number" if unbounded else f"a number in {left}{low:g}, {high:g}{right}"
         raise ValueError(f"{name} must be {allowed}, got {value!r}")
     return x
 
@@ -51,11 +50,33 @@ def integer(name: str, value: Any, low: int = 0, high: int | None = None) -> int
     Traceback (most recent call last):
     ValueError: n_states must be an integer >= 1, got 2.5
     """
-    allowed = f"an integer >= {low}" if high is None else f"an integer in [{low}, {high}]"
-    is_integer = isinstance(value, (int, np.integer)) and not isinstance(value, (bool, np.bool_))
+    is_integer = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
     if not is_integer or value < low or (high is not None and value > high):
-        raise ValueError(f"{name} must be {allowed}, got {value!r}")
+        allowed = f">= {low}" if high is None else f"in [{low}, {high}]"
+        raise ValueError(f"{name} must be an integer {allowed}, got {value!r}")
     return int(value)
+
+
+def integers(
+    name: str, value: ArrayLike, low: int = 0, high: int | None = None
+) -> NDArray[np.int64]:
+    """Return `value` as an int64 array with all entries in [low, high], or raise ``ValueError``.
+
+    Examples
+    --------
+    >>> integers("s", [0, -1], 0, 9)
+    Traceback (most recent call last):
+    ValueError: s must hold integers in [0, 9], got -1 at (1,)
+    """
+    x = np.asarray(value)
+    if x.size and x.dtype.kind not in "iu":
+        raise ValueError(f"{name} must hold integers, got dtype {x.dtype}")
+    if x.size and (x.min() < low or (high is not None and x.max() > high)):
+        outside = (x < low) if high is None else (x < low) | (x > high)
+        where = tuple(int(i) for i in np.argwhere(outside)[0])
+        allowed = f">= {low}" if high is None else f"in [{low}, {high}]"
+        raise ValueError(f"{name} must hold integers {allowed}, got {x[where]} at {where}")
+    return x.astype(np.int64, copy=False)
 
 
 def array(

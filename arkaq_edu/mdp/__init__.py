@@ -1,19 +1,27 @@
-"""Decisions in a world that is seen: bandits, Markov decision processes, Q-learning.
+"""Decisions in a world that is fully seen: bandits, Markov decision processes, Q-learning.
 
-Thesis chapters 2.1, 2.2, 3 and 4.3. Learning from rewards is a third kind beside learning with a
-teacher and learning without any (the thesis counts it, and ARKAQ, as unsupervised; in ARKAQ only
-the segmentation of the world is).
+Thesis chapters 2.1, 2.2, 3 and 4.3. Learning from rewards is a third kind of learning, beside
+learning with a teacher and learning without one. (The thesis counts it, and ARKAQ, as unsupervised.
+In ARKAQ only the segmentation of the world is.)
 
-- `model`, `planning`: an MDP, and the best actions from knowing it (`grid`: a floor to try it on);
-- `optimality`, `performance`: what "best" means, and how good learning was;
-- `bandits`, `choice`: exploration against exploitation, and schedules between the two;
-- `prediction`, `q_learning`, `control`: learning from what happens (`kernels`: the inner loops).
+- `model`, `planning`: an MDP, and the best actions if it is known (`gridworld`: an example);
+- `optimality`, `performance`: what "best" means, and how well something was learned;
+- `bandits`, `choice`, `schedules`: exploration against exploitation;
+- `prediction`, `q_learning`, `training`: learning from experience (`compiled`: the fast twins).
 """
 
 from arkaq_edu.mdp.bandits import UCB, Bandit, Boltzmann, EpsilonGreedy, Play, Random, play
-from arkaq_edu.mdp.gridworld import Grid, grid_world
+from arkaq_edu.mdp.choice import argmax_shared, softmax
+from arkaq_edu.mdp.gridworld import MOVES, Grid, grid_world
 from arkaq_edu.mdp.model import MDP
-from arkaq_edu.mdp.optimality import average_reward, delayed_rewards, discounted
+from arkaq_edu.mdp.optimality import (
+    CHAINS,
+    average_reward,
+    best_chains,
+    delayed_rewards,
+    discounted,
+    earnings,
+)
 from arkaq_edu.mdp.performance import quality_of_convergence, regret, speed_of_convergence
 from arkaq_edu.mdp.planning import (
     best_actions,
@@ -27,11 +35,13 @@ from arkaq_edu.mdp.planning import (
 )
 from arkaq_edu.mdp.prediction import Episode, discounted_returns, monte_carlo, simulate, td0
 from arkaq_edu.mdp.q_learning import QLearner
-from arkaq_edu.mdp.schedules import Exponential, Linear, Power, argmax_shared, softmax
+from arkaq_edu.mdp.schedules import Exponential, Power
 from arkaq_edu.mdp.training import Held, TrainingRun, exploit, explore, hold, train
 
 __all__ = [
+    "CHAINS",
     "MDP",
+    "MOVES",
     "UCB",
     "Bandit",
     "Boltzmann",
@@ -40,7 +50,6 @@ __all__ = [
     "Exponential",
     "Grid",
     "Held",
-    "Linear",
     "Play",
     "Power",
     "QLearner",
@@ -49,9 +58,11 @@ __all__ = [
     "argmax_shared",
     "average_reward",
     "best_actions",
+    "best_chains",
     "delayed_rewards",
     "discounted",
     "discounted_returns",
+    "earnings",
     "error_bound",
     "exploit",
     "explore",

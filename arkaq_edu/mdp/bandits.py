@@ -1,4 +1,4 @@
-"""Exploration against exploitation: k gambling machines, each with its own chance to pay."""
+"""Exploration against exploitation: k gambling machines with different chances to pay."""
 
 from __future__ import annotations
 
@@ -8,29 +8,29 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._checks import array, integer, number
-from arkaq_edu.mdp._indices import indices
-from arkaq_edu.mdp.schedules import Schedule, argmax_shared, softmax, value_at
+from arkaq_edu._checks import array, integer, integers, number
+from arkaq_edu.mdp.choice import argmax_shared, softmax
+from arkaq_edu.mdp.schedules import Schedule, value_at
 
 
 class Bandit:
-    """k machines; machine i pays 1 with probability p_i, and else 0.
+    """k gambling machines. Machine i pays 1 with probability p_i, and otherwise 0.
 
     Parameters
     ----------
     p : array_like, shape (k,)
-        The chance of each machine, in [0, 1]; at least one machine.
+        The probability that each machine pays, in [0, 1]; at least one machine.
 
     Attributes
     ----------
     p : ndarray, shape (k,)
     best : float
-        The highest chance: what a pull earns for one who knows.
+        The highest probability: what a pull of the best machine earns on average.
 
     Raises
     ------
     ValueError
-        If a chance is outside [0, 1] or there is no machine.
+        If a probability is outside [0, 1] or there is no machine.
 
     References
     ----------
@@ -53,31 +53,31 @@ class Bandit:
         self.best = float(self.p.max())
 
     def pull(self, arms: ArrayLike, rng: np.random.Generator | int) -> NDArray[np.float64]:
-        """Pull machines and return what each pays, 0.0 or 1.0.
+        """Pull machines and return what each pull pays, 0.0 or 1.0.
 
         Parameters
         ----------
         arms : array_like of int
-            The machine of each pull; of any shape.
+            The machine of each pull, in an array of any shape.
         rng : numpy.random.Generator or int
-            Where the draws come from.
+            The random numbers.
 
         Returns
         -------
         ndarray
-            Of the shape of `arms`.
+            With the shape of `arms`.
 
         Raises
         ------
         ValueError
-            If there is no such machine.
+            If a machine does not exist.
         """
-        chances = self.p[indices("arms", arms, 0, len(self.p) - 1)]
-        return (np.random.default_rng(rng).random(chances.shape) < chances).astype(np.float64)
+        p = self.p[integers("arms", arms, 0, len(self.p) - 1)]
+        return (np.random.default_rng(rng).random(p.shape) < p).astype(np.float64)
 
 
 class Strategy(Protocol):
-    """A way to choose a machine, for many players at once: write your own like this."""
+    """A rule to choose a machine, for many players at once. Write your own like this."""
 
     def choose(
         self, counts: NDArray[np.int64], means: NDArray[np.float64], rng: np.random.Generator
@@ -89,9 +89,9 @@ class Strategy(Protocol):
         counts : ndarray of int, shape (N, k)
             How often each player has pulled each machine.
         means : ndarray, shape (N, k)
-            What each machine has paid that player on average; 0 for one never pulled.
+            What each machine has paid that player on average; 0 if it was never pulled.
         rng : numpy.random.Generator
-            Where the draws come from.
+            The random numbers.
 
         Returns
         -------
@@ -102,7 +102,7 @@ class Strategy(Protocol):
 
 @dataclass(frozen=True)
 class Random:
-    """Explore always: every machine alike.
+    """Always explore: pull every machine with the same probability.
 
     Examples
     --------
@@ -119,12 +119,12 @@ class Random:
 
 @dataclass(frozen=True)
 class EpsilonGreedy:
-    """Explore with probability epsilon, any machine alike; else pull the best one so far.
+    """Explore with probability epsilon; otherwise pull the machine that paid best so far.
 
     Parameters
     ----------
     epsilon : float or callable, default 0.1
-        In [0, 1], or a function of the pull n = 1, 2, ... that returns such a number.
+        In [0, 1], or a function of the pull n = 1, 2, ... that returns it.
 
     Raises
     ------
@@ -154,12 +154,12 @@ class EpsilonGreedy:
 
 @dataclass(frozen=True)
 class Boltzmann:
-    """Pull each machine with a chance that grows with its mean (equation 3.2).
+    """Pull each machine with a probability that grows with its mean (equation 3.2).
 
     Parameters
     ----------
     temperature : float or callable, default 0.1
-        T > 0, or a function of the pull n = 1, 2, ... that returns such a number.
+        T > 0, or a function of the pull n = 1, 2, ... that returns it.
 
     Raises
     ------
@@ -186,18 +186,18 @@ class Boltzmann:
         self, counts: NDArray[np.int64], means: NDArray[np.float64], rng: np.random.Generator
     ) -> NDArray[np.intp]:
         """Choose a machine for each player."""
-        chances = softmax(means, value_at(self.temperature, _pull(counts))).cumsum(axis=1)
-        return (rng.random((len(counts), 1)) * chances[:, -1:] >= chances).sum(axis=1)
+        below = softmax(means, value_at(self.temperature, _pull(counts))).cumsum(axis=1)
+        return (rng.random((len(counts), 1)) * below[:, -1:] >= below).sum(axis=1)
 
 
 @dataclass(frozen=True)
 class UCB:
-    """Pull the machine that could be best: highest mean plus c sqrt(ln n / pulls of it).
+    """Pull the machine that could be best: the highest mean + c sqrt(ln(n) / its pulls).
 
     Parameters
     ----------
     c : float, default sqrt(2)
-        How wide the margin is, in [0, inf). With sqrt(2) it is UCB1, whose regret after n pulls is
+        The width of the margin, in [0, inf). With sqrt(2) this is UCB1. Its regret after n pulls is
         at most sum_i 8 ln(n) / d_i + (1 + pi^2 / 3) d_i, with d_i = max(p) - p_i > 0.
 
     Raises
@@ -231,21 +231,21 @@ class UCB:
 
 
 def _pull(counts: NDArray[np.int64]) -> int:
-    """Return which pull comes next, counted from 1: all players are at the same one."""
+    """Return the number of the next pull, from 1; it is the same for all players."""
     return int(counts[0].sum()) + 1
 
 
 class Play(NamedTuple):
-    """What N players did, pull by pull.
+    """What N players pulled and earned.
 
     Attributes
     ----------
     arms : ndarray of int, shape (N, pulls)
         The machine of each pull.
     rewards : ndarray, shape (N, pulls)
-        What it paid.
+        What each pull paid.
     expected : ndarray, shape (N, pulls)
-        What it pays on average: the measure of the choice, without the luck.
+        What that machine pays on average. This judges the choice without the luck.
     """
 
     arms: NDArray[np.int64]
@@ -261,7 +261,7 @@ def play(
     players: int = 1,
     rng: np.random.Generator | int,
 ) -> Play:
-    """Let players pull, each on machines of their own, all by one strategy.
+    """Let players play by one strategy, each on machines of their own.
 
     Parameters
     ----------
@@ -270,11 +270,11 @@ def play(
     strategy : Strategy
         `Random`, `EpsilonGreedy`, `Boltzmann`, `UCB`, or any object with their `choose`.
     pulls : int
-        How many pulls each player has, at least 1.
+        Pulls of each player, at least 1.
     players : int, default 1
-        How many players, at least 1: a claim about a strategy needs many.
+        Number of players, at least 1. A claim about a strategy needs many.
     rng : numpy.random.Generator or int
-        Where all draws come from.
+        The random numbers.
 
     Returns
     -------

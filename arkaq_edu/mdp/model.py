@@ -7,38 +7,51 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._checks import array, distribution, number
-from arkaq_edu._compiled import kernel
-from arkaq_edu.mdp._indices import indices
+from arkaq_edu._checks import array, distribution, integers, number
+
+#: The largest reward: whatever is summed or discounted then stays a float. A larger one is a
+#: mistake.
+LARGEST_REWARD = 1e100
 
 
-@kernel
-def _next_states(cumulative, s, a, u, s_next):
-    """Fill in, for each (s, a), the state at quantile u of T(s, a, .)."""
-    for i in range(len(s)):
-        s_next[i] = np.searchsorted(cumulative[a[i], s[i]], u[i], side="right")
+def rewards(name: str, value: ArrayLike, shape: tuple[int | None, ...]) -> NDArray[np.float64]:
+    """Return `value` as an array of rewards, or raise ``ValueError``.
+
+    Examples
+    --------
+    >>> rewards("R", [1.0, -1e200], (2,))
+    Traceback (most recent call last):
+    ValueError: R must lie in [-1e+100, 1e+100], got -1e+200
+    """
+    R = array(name, value, shape)
+    largest = max(R.min(initial=0), R.max(initial=0), key=abs)
+    if abs(largest) > LARGEST_REWARD:
+        raise ValueError(
+            f"{name} must lie in [{-LARGEST_REWARD:g}, {LARGEST_REWARD:g}], got {largest:g}"
+        )
+    return R
 
 
 class MDP:
-    """A Markov decision process <S, A, T, R>, with the discount rate that weighs its future.
+    """A Markov decision process <S, A, T, R> with its discount rate.
 
     Parameters
     ----------
     T : array_like, shape (A, S, S)
         ``T[a, s, t]`` is the probability that action `a` leads from state `s` to state `t`.
     R : array_like, shape (S, A)
-        ``R[s, a]`` is the reward expected for action `a` in state `s`.
+        ``R[s, a]`` is the expected reward for action `a` in state `s`.
     gamma : float
         The discount rate, in [0, 1).
     start : array_like, shape (S,), optional
-        How likely an episode starts in each state; without it all are equally likely.
+        The probability that an episode starts in each state; without it all are equally likely.
 
     Attributes
     ----------
     T, R, start : ndarray
-        As given; they cannot be written to.
+        As given, but read-only.
     cumulative : ndarray, shape (A, S, S)
-        The sums of `T` over the next state, up to and including each: what draws are made from.
+        The cumulative sums of `T` over the next state, from which draws are made.
     gamma : float
     n_states, n_actions : int
     ends : ndarray of bool, shape (S,)
@@ -47,8 +60,8 @@ class MDP:
     Raises
     ------
     ValueError
-        If a shape does not fit, an entry is not finite, a row of `T` is no distribution, `gamma`
-        is outside [0, 1), or a reward for ever, R / (1 - gamma), is too large for a float.
+        If a shape does not fit, an entry is not finite, a row of `T` is not a distribution,
+        `gamma` is outside [0, 1), or a reward is larger than 1e100.
 
     References
     ----------
@@ -56,8 +69,8 @@ class MDP:
 
     Examples
     --------
-    A robot that stands far from the ball (0), near it (1), or has it (2: the end). It walks, which
-    takes it one state on with probability 0.8, or waits.
+    A robot is far from the ball (0), near it (1), or has it (2, the end). Walking takes it one
+    state further with probability 0.8. Or it waits.
 
     >>> walk = [[0.2, 0.8, 0.0], [0.0, 0.2, 0.8], [0.0, 0.0, 1.0]]
     >>> wait = np.eye(3)
@@ -74,21 +87,15 @@ class MDP:
         self.T = distribution("T", array("T", T, (None, None, None))).copy()
         self.n_actions, self.n_states, n_next = self.T.shape
         if n_next != self.n_states or not self.T.size:
-            raise ValueError(f"T must have shape (A, S, S), none of them 0, got {self.T.shape}")
-        self.R = array("R", R, (self.n_states, self.n_actions)).copy()
+            raise ValueError(f"T must have shape (A, S, S), each at least 1, got {self.T.shape}")
+        self.R = rewards("R", R, (self.n_states, self.n_actions)).copy()
         self.gamma = number("gamma", gamma, 0, 1, open_high=True)
-        most = np.finfo(float).max * (1 - self.gamma)
-        if (np.abs(self.R) > most).any():
-            raise ValueError(
-                f"R must lie in [{-most:.4g}, {most:.4g}] for its discounted sum to be a float, "
-                f"got {np.abs(self.R).max():.4g}"
-            )
         if start is None:
             start = np.full(self.n_states, 1 / self.n_states)
         self.start = distribution("start", array("start", start, (self.n_states,))).copy()
         stays = (self.T[:, range(self.n_states), range(self.n_states)] == 1).all(axis=0)
         self.ends = stays & (self.R == 0).all(axis=1)
-        # Divided by its last entry, so that no draw below 1 falls past a state that can follow.
+        # Divided by the last entry, so that a draw below 1 always finds a state that can follow.
         sums = self.T.cumsum(axis=2)
         self.cumulative = sums / sums[:, :, -1:]
         for fixed in (self.T, self.R, self.start, self.ends, self.cumulative):
@@ -98,7 +105,7 @@ class MDP:
         return f"MDP({self.n_states} states, {self.n_actions} actions, gamma={self.gamma:g})"
 
     def action_values(self, V: ArrayLike) -> NDArray[np.float64]:
-        """Return R(s, a) + gamma sum_t T(s, a, t) V(t), what is maximized in equation 2.8.
+        """Return R(s, a) + gamma sum_t T(s, a, t) V(t), which equation 2.8 maximizes over a.
 
         Parameters
         ----------
@@ -117,7 +124,7 @@ class MDP:
         Notes
         -----
         This takes O(A S^2) operations: one sweep of value iteration. A step of Q-learning takes
-        O(A), for the one maximum in equation 2.12 (the thesis, chapter 6, gives it the former).
+        only O(A), for the maximum in equation 2.12. (The thesis, chapter 6, gives it the former.)
 
         Examples
         --------
@@ -131,19 +138,19 @@ class MDP:
     def step(
         self, s: ArrayLike, a: ArrayLike, rng: np.random.Generator | int
     ) -> tuple[Any, Any, Any]:
-        """Take action `a` in state `s`, for one walker or for many at once.
+        """Take action `a` in state `s`, once or for many walkers at the same time.
 
         Parameters
         ----------
         s, a : int or array_like of int, shape (N,)
             The states and the actions.
         rng : numpy.random.Generator or int
-            Where the draws come from.
+            The random numbers: one for each walker.
 
         Returns
         -------
         s_next : int or ndarray, shape (N,)
-            The states that follow.
+            The next states.
         r : float or ndarray, shape (N,)
             The rewards.
         terminated : bool or ndarray, shape (N,)
@@ -162,12 +169,11 @@ class MDP:
         (array([1, 1]), array([5., 0.]), array([ True,  True]))
         """
         s, a = np.broadcast_arrays(
-            indices("s", s, 0, self.n_states - 1), indices("a", a, 0, self.n_actions - 1)
+            integers("s", s, 0, self.n_states - 1), integers("a", a, 0, self.n_actions - 1)
         )
         u = np.random.default_rng(rng).random(s.shape)
-        s_next = np.empty(s.shape, dtype=np.int64)
-        _next_states(self.cumulative, s.ravel(), a.ravel(), np.ravel(u), s_next.reshape(-1))
-        return s_next[()], self.R[s, a], self.ends[s_next]
+        s_next = (self.cumulative[a, s] <= np.expand_dims(u, -1)).sum(axis=-1)
+        return s_next, self.R[s, a], self.ends[s_next]
 
     @classmethod
     def from_gymnasium(cls, env: Any, gamma: float = 0.99) -> MDP:
@@ -184,8 +190,8 @@ class MDP:
         Returns
         -------
         MDP
-            With one state more than the environment, the last, for the end of an episode: what
-            terminates leads there. A time limit is not part of the model.
+            It has one more state than the environment: the last one, where every episode that
+            terminates ends. A time limit is not part of the model.
 
         Raises
         ------

@@ -5,17 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._checks import array, number
-from arkaq_edu.mdp._indices import indices
+from arkaq_edu._checks import array, integers, number
 from arkaq_edu.mdp.model import MDP
-from arkaq_edu.mdp.planning import policy_iteration, policy_model
+from arkaq_edu.mdp.planning import finite_horizon, policy_iteration, policy_model
+
+#: The chains of figure 2.2, from the top: the number of steps without a reward, and the reward of
+#: each later step.
+CHAINS = {"upper": (2, 2.0), "middle": (5, 10.0), "lower": (6, 11.0)}
 
 
 def delayed_rewards(
-    delays: Sequence[int] = (2, 5, 6),
-    rewards: Sequence[float] = (2.0, 10.0, 11.0),
+    delays: Sequence[int] = tuple(delay for delay, _ in CHAINS.values()),
+    rewards: Sequence[float] = tuple(reward for _, reward in CHAINS.values()),
     gamma: float = 0.9,
 ) -> MDP:
     """Return the world of figure 2.2: choose once, wait, then earn the same at every step.
@@ -23,17 +26,18 @@ def delayed_rewards(
     Parameters
     ----------
     delays : sequence of int, default (2, 5, 6)
-        How many steps of each choice earn nothing, the choice itself included; each at least 1.
+        The number of steps without a reward after each choice, including the choice itself; each
+        at least 1.
     rewards : sequence of float, default (2, 10, 11)
-        What each step after that earns.
+        The reward of each later step.
     gamma : float, default 0.9
-        The discount rate. The thesis does not name it; its figures, 16.2, 59 and 58.5, are those
-        of 0.9.
+        The discount rate. The thesis does not name it, but its results, 16.2, 59 and 58.5, are
+        those of 0.9.
 
     Returns
     -------
     MDP
-        State 0 is where the choice is made; action i leads along chain i.
+        The choice is made in state 0; action i leads along chain i.
 
     Raises
     ------
@@ -47,7 +51,6 @@ def delayed_rewards(
 
     Examples
     --------
-    >>> from arkaq_edu.mdp import finite_horizon
     >>> world = delayed_rewards()
     >>> finite_horizon(world, 5)[-1, 0]
     array([6., 0., 0.])
@@ -56,7 +59,7 @@ def delayed_rewards(
     >>> average_reward(world)[0]
     array([ 2., 10., 11.])
     """
-    waits = indices("delays", delays, 1, None)
+    waits = integers("delays", delays, 1)
     n = len(waits)
     earned = array("rewards", rewards, (n,))
     n_states = 1 + int(waits.sum())
@@ -73,6 +76,60 @@ def delayed_rewards(
     return MDP(T, R, number("gamma", gamma, 0, 1, open_high=True), np.eye(n_states)[0])
 
 
+def earnings(horizon: int, gamma: float) -> NDArray[np.float64]:
+    """Return what the chains of figure 2.2 earn by each of the three models.
+
+    Parameters
+    ----------
+    horizon : int
+        The number of steps that the finite-horizon model counts, at least 1.
+    gamma : float
+        The discount rate, in [0, 1).
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        A row for each model, in the order of equations 2.1 to 2.3; a column for each chain.
+
+    References
+    ----------
+    Thesis, equations 2.1 to 2.3.
+
+    Examples
+    --------
+    >>> earnings(5, 0.9).round(1)
+    array([[ 6. ,  0. ,  0. ],
+           [16.2, 59. , 58.5],
+           [ 2. , 10. , 11. ]])
+    """
+    world = delayed_rewards(gamma=gamma)
+    return np.array(
+        [finite_horizon(world, horizon)[-1, 0], discounted(world)[0], average_reward(world)[0]]
+    )
+
+
+def best_chains(earned: ArrayLike) -> list[str]:
+    """Return the names of the chains that earn most, several if they earn the same.
+
+    Parameters
+    ----------
+    earned : array_like, shape (3,)
+        What each chain earns by one model.
+
+    Returns
+    -------
+    list of str
+        Names of `CHAINS`.
+
+    Examples
+    --------
+    >>> best_chains([100.0, 110.0, 110.0])
+    ['middle', 'lower']
+    """
+    best = np.isclose(earned, np.max(earned))
+    return [name for name, is_best in zip(CHAINS, best, strict=True) if is_best]
+
+
 def discounted(mdp: MDP) -> NDArray[np.float64]:
     """Return what each first action earns in the discounted infinite-horizon model (2.2).
 
@@ -84,13 +141,13 @@ def discounted(mdp: MDP) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (S, A)
-        Q*: the action, then the best actions for ever, each reward discounted to now.
+        Q*: the discounted sum of all rewards, for the action and then the best actions for ever.
 
     Notes
     -----
-    What is best depends on gamma, as it depends on h in the finite-horizon model; it depends on
-    neither in the average-reward model. Under figure 2.2 the thesis says that both other models
-    are "dependent on the horizon length".
+    What is best depends on gamma here, on h in the finite-horizon model, and on neither in the
+    average-reward model. (Under figure 2.2 the thesis says that both other models are "dependent
+    on the horizon length".)
 
     References
     ----------
@@ -110,20 +167,20 @@ def average_reward(mdp: MDP) -> NDArray[np.float64]:
     Parameters
     ----------
     mdp : MDP
-        The model; its discount rate is not used. Any structure will do: where several sets of
-        states are never left again, the best is headed for.
+        The model, of any structure: it may have several sets of states that are never left. Its
+        discount rate is not used.
 
     Returns
     -------
     ndarray, shape (S, A)
-        The long-run average of the rewards when the action is followed by the best ones. The
-        action's own reward does not matter: it happens once.
+        The long-run average of the rewards if the best actions follow. The reward of the first
+        action does not matter, because it comes only once.
 
     Notes
     -----
-    Howard's policy iteration for several recurrent classes. A policy is improved where another
-    action leads to a higher average; only where none does, where one earns more on the way (a
-    higher bias).
+    This is Howard's policy iteration for several recurrent classes. A state's action is replaced
+    by one that leads to a higher average. Where there is none, it is replaced by one with the same
+    average that earns more on the way (a higher bias).
 
     References
     ----------
@@ -142,7 +199,7 @@ def average_reward(mdp: MDP) -> NDArray[np.float64]:
         gain, bias = _gain_and_bias(*policy_model(mdp, policy))
         average = (mdp.T @ gain).T
         onward = mdp.R + (mdp.T @ bias).T
-        # Rounding must not pass for an improvement: two equal actions would take turns for ever.
+        # Rounding must not count as an improvement, or two equal actions alternate for ever.
         rounding = 1e-11 * (np.abs(mdp.R).max() + np.abs(bias).max())
         best = average.max(axis=1)
         higher = best > average[states, policy] + rounding
@@ -157,7 +214,7 @@ def average_reward(mdp: MDP) -> NDArray[np.float64]:
 def _gain_and_bias(
     T: NDArray[np.float64], R: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.floating]]:
-    """Return the average reward per step from each state of a chain, and the head start of each."""
+    """Return the average reward per step from each state of a chain, and the bias of each."""
     limit = _limiting_matrix(T)
     gain = limit @ R
     bias = np.linalg.solve(np.eye(len(T)) - T + limit, R - gain)
@@ -165,7 +222,7 @@ def _gain_and_bias(
 
 
 def _limiting_matrix(T: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the share of all time that a chain spends in each state, from each start (S, S)."""
+    """Return the long-run share of time in each state, for each start: shape (S, S)."""
     n = len(T)
     paths = np.eye(n) + (T > 0)
     for _ in range(n.bit_length()):
@@ -184,7 +241,7 @@ def _limiting_matrix(T: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _stationary(T: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the distribution that an irreducible chain leaves as it is: x T = x, sum x = 1."""
+    """Return the stationary distribution of an irreducible chain: x T = x, sum x = 1."""
     balance = np.eye(len(T)) - T.T
     balance[-1] = 1
     return np.linalg.solve(balance, np.eye(len(T))[-1])

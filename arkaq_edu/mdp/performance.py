@@ -1,4 +1,4 @@
-"""How good learning was: how near to the best, how soon, and at what price (thesis 2.1.2)."""
+"""How well something was learned: how near to the best, how fast, at what cost (thesis 2.1.2)."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from arkaq_edu._checks import array, integer, number
 
 
 def regret(earned: ArrayLike, optimal: float) -> NDArray[np.float64]:
-    """Return how much less was earned so far than the optimal policy would have.
+    """Return how much less was earned so far than by the optimal policy.
 
     Parameters
     ----------
     earned : array_like, shape (..., T)
-        What was earned, or was to be expected, at each of T trials.
+        What was earned, or was expected, at each of T trials.
     optimal : float
-        What the optimal policy earns at each.
+        What the optimal policy earns at each trial.
 
     Returns
     -------
     ndarray, shape (..., T)
-        The sum of the shortfalls up to and including each trial.
+        The sum of the differences up to and including each trial.
 
     Raises
     ------
@@ -43,18 +43,18 @@ def regret(earned: ArrayLike, optimal: float) -> NDArray[np.float64]:
 def quality_of_convergence(
     earned: ArrayLike, optimal: float, *, baseline: float = 0.0, last: int = 100
 ) -> NDArray[np.float64]:
-    """Return which share of the optimum is earned in the end.
+    """Return the share of the optimum that is earned in the end.
 
     Parameters
     ----------
     earned : array_like, shape (..., T)
         What was earned at each of T trials.
     optimal : float
-        What the optimal policy earns at each.
+        What the optimal policy earns at each trial.
     baseline : float, default 0.0
-        What counts as nothing, for instance what random actions earn; below `optimal`.
+        What counts as zero, for example what random actions earn; below `optimal`.
     last : int, default 100
-        Over how many of the last trials to take the mean, at least 1 (all, if there are fewer).
+        The number of last trials to average over, at least 1 (all, if there are fewer).
 
     Returns
     -------
@@ -82,24 +82,25 @@ def quality_of_convergence(
 
 
 def speed_of_convergence(earned: ArrayLike, target: float, *, window: int = 1) -> NDArray[np.intp]:
-    """Return after how many trials the earnings have reached a target for good.
+    """Return the number of trials after which the earnings stay at a target.
 
-    "The definition of convergence must be well defined", says the thesis: here it is the first
-    trial from which on the mean of the last `window` trials never falls below `target` again.
+    "The definition of convergence must be well defined", says the thesis. Here learning has
+    converged at the first trial after which the mean of the last `window` trials never falls below
+    `target` again.
 
     Parameters
     ----------
     earned : array_like, shape (..., T)
         What was earned at each of T trials.
     target : float
-        What counts as converged, for instance 99 percent of the optimum.
+        What counts as converged, for example 99 percent of the optimum.
     window : int, default 1
-        Over how many trials to smooth, from 1 to T.
+        The number of trials to average over, from 1 to T.
 
     Returns
     -------
     ndarray of int, shape (...)
-        The number of trials up to the end of that first window; T + 1 where it never converged.
+        The number of trials up to the end of that first window; T + 1 if it never converged.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Planning: the best actions from a model that is known."""
+"""Planning: the best actions, computed from a known model."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._checks import array, distribution, integer, number
-from arkaq_edu.mdp._indices import indices
+from arkaq_edu._checks import array, distribution, integer, integers, number
 from arkaq_edu.mdp.model import MDP
 
 
@@ -22,19 +21,19 @@ def value_iteration(
     mdp : MDP
         The model.
     tol : float, default 1e-9
-        With no horizon: the values returned are this close to V*, in every state (up to the
-        rounding of floats).
+        Without a horizon, the values are within `tol` of V* in every state (up to the rounding of
+        floats).
     horizon : int, optional
-        The number of steps still to go, at least 1; without it the future has no end.
+        The number of steps left, at least 1; without it the future has no end.
 
     Returns
     -------
     values : ndarray, shape (S,)
         V*, or the best discounted sum of `horizon` rewards.
     policy : ndarray of int, shape (S,)
-        The action to take first in each state; the lowest of those that are equally good as far as
-        `tol` can tell. With a horizon it holds for that many steps to go; `finite_horizon` gives
-        all the shorter ones.
+        The first action in each state: the lowest of those that are equally good within `tol`. With
+        a horizon it is the best only when that many steps are left; `finite_horizon` also gives the
+        best actions for fewer steps.
 
     Raises
     ------
@@ -43,20 +42,21 @@ def value_iteration(
 
     See Also
     --------
-    policy_iteration : exact, and faster where gamma is near 1.
-    error_bound : how far any values can be from V*.
+    policy_iteration : exact, and faster if gamma is near 1.
+    error_bound : how far given values can be from V*.
 
     Notes
     -----
-    A sweep brings any values closer to V* by a factor gamma at least. So after a sweep that changed
-    V by at most d, V is within d gamma / (1 - gamma) of V*; and n sweeps from V = 0 end within
-    gamma^n max|R| / (1 - gamma) of it. Whichever is first below `tol` ends the iteration. A policy
-    that is greedy for values within e of V* earns at most 2 gamma e / (1 - gamma) less than V*.
+    Each sweep reduces the distance from V* at least by the factor gamma. So after a sweep that
+    changed V by at most d, V is within d gamma / (1 - gamma) of V*. And after n sweeps from V = 0,
+    V is within gamma^n max|R| / (1 - gamma) of V*. The iteration ends when one of these two bounds
+    is below `tol`. A policy that is greedy for values within e of V* earns at most
+    2 gamma e / (1 - gamma) less than V*.
 
-    Where the thesis prints otherwise: the argument x of 2.6 and 2.7 is the state s, and 2.6, the
-    best immediate reward, is the policy for one step to go. Equation 2.7, V_1 = gamma max_a R(s,
-    a), is not what 2.8 gives from V_0 = 0: the first reward is not discounted. In 2.8 the maximum
-    is over a, and it is V that converges to V*, not the other way round.
+    Corrections to the thesis: the argument x of 2.6 and 2.7 is the state s. Equation 2.6, the best
+    immediate reward, is the policy for one remaining step. Equation 2.7, V_1 = gamma max_a R(s, a),
+    is not what 2.8 gives from V_0 = 0: the first reward is not discounted. In 2.8 the maximum is
+    over a, and V converges to V*, not V* to V.
 
     References
     ----------
@@ -84,7 +84,7 @@ def value_iteration(
 
 
 def _sweeps(mdp: MDP, tol: float) -> int:
-    """Return the number of sweeps after which V is within `tol` of V*, whatever happens."""
+    """Return a number of sweeps after which V is always within `tol` of V*."""
     furthest = np.abs(mdp.R).max() / (1 - mdp.gamma)
     if mdp.gamma == 0 or furthest <= tol:
         return 1
@@ -92,16 +92,16 @@ def _sweeps(mdp: MDP, tol: float) -> int:
 
 
 def finite_horizon(mdp: MDP, horizon: int, gamma: float = 1.0) -> NDArray[np.float64]:
-    """Return what each first action earns when a known number of steps is left (equation 2.1).
+    """Return what each first action earns with a known number of steps left (equation 2.1).
 
     Parameters
     ----------
     mdp : MDP
-        The model; its own discount rate is not used.
+        The model. Its own discount rate is not used.
     horizon : int
         The number of steps h, at least 1.
     gamma : float, default 1.0
-        The discount rate, in [0, 1]; 1 gives the plain sum of the finite-horizon model.
+        The discount rate, in [0, 1]. 1 gives the plain sum of the finite-horizon model.
 
     Returns
     -------
@@ -115,10 +115,10 @@ def finite_horizon(mdp: MDP, horizon: int, gamma: float = 1.0) -> NDArray[np.flo
 
     Notes
     -----
-    Both ways of 2.1.1 to act on it are here: with k steps left, the best action of ``Q[k - 1]``
-    (k steps, then k - 1, until one remains), or at every step that of ``Q[-1]`` (a horizon that
-    recedes). Equation 2.1 sums over t = 0 ... k, which is one reward too many: with h = 5 the
-    sums under figure 2.2, 6, 0 and 0, have five terms, t = 0 ... h - 1.
+    2.1.1 names two ways to act on this. With k steps left, take the best action of ``Q[k - 1]``,
+    for k, k - 1, ... 1. Or take the best action of ``Q[-1]`` at every step (a receding horizon).
+    Equation 2.1 sums over t = 0 ... k, which is one reward too many. The sums for h = 5 under
+    figure 2.2 (6, 0 and 0) have five terms, t = 0 ... h - 1.
 
     References
     ----------
@@ -142,29 +142,29 @@ def finite_horizon(mdp: MDP, horizon: int, gamma: float = 1.0) -> NDArray[np.flo
 
 
 def _first_best(Q: NDArray[np.float64], slack: float) -> NDArray[np.intp]:
-    """Return the lowest action of each state that is no more than `slack` below the best."""
+    """Return for each state the lowest action within `slack` of the best."""
     return best_actions(Q, slack).argmax(axis=1)
 
 
 def best_actions(Q: ArrayLike, slack: float = 1e-9) -> NDArray[np.bool_]:
-    """Return which actions are the best of their state: the set under equations 2.9 and 3.1.
+    """Return which actions are the best of their state: the argmax of equations 2.9 and 3.1.
 
     Parameters
     ----------
     Q : array_like, shape (S, A)
         The value of each action.
     slack : float, default 1e-9
-        How far below the best an action may be and still count as equally good, at least 0.
+        An action this far below the best still counts as equally good; at least 0.
 
     Returns
     -------
     ndarray of bool, shape (S, A)
-        At least one true in each row.
+        At least one is true in each row.
 
     Raises
     ------
     ValueError
-        If `Q` is no matrix of finite numbers or `slack` is below 0.
+        If `Q` is not a matrix of finite numbers or `slack` is below 0.
 
     Examples
     --------
@@ -177,7 +177,7 @@ def best_actions(Q: ArrayLike, slack: float = 1e-9) -> NDArray[np.bool_]:
 
 
 def error_bound(mdp: MDP, values: ArrayLike) -> float:
-    """Return a number no smaller than the distance of `values` from V*, in any state.
+    """Return a bound on the distance of `values` from V* in any state.
 
     Parameters
     ----------
@@ -189,7 +189,7 @@ def error_bound(mdp: MDP, values: ArrayLike) -> float:
     Returns
     -------
     float
-        By how much one sweep changes them, over 1 - gamma.
+        The largest change by one sweep, divided by 1 - gamma.
 
     Raises
     ------
@@ -211,7 +211,7 @@ def error_bound(mdp: MDP, values: ArrayLike) -> float:
 
 
 def policy_evaluation(mdp: MDP, policy: ArrayLike) -> NDArray[np.floating]:
-    """Solve V = R_policy + gamma T_policy V: what a policy earns, exactly.
+    """Solve V = R_policy + gamma T_policy V: the exact values of a policy.
 
     Parameters
     ----------
@@ -227,7 +227,7 @@ def policy_evaluation(mdp: MDP, policy: ArrayLike) -> NDArray[np.floating]:
     Raises
     ------
     ValueError
-        If the shape does not fit, an action does not exist, or a row is no distribution.
+        If the shape does not fit, an action does not exist, or a row is not a distribution.
 
     References
     ----------
@@ -244,7 +244,7 @@ def policy_evaluation(mdp: MDP, policy: ArrayLike) -> NDArray[np.floating]:
 
 
 def policy_iteration(mdp: MDP) -> tuple[NDArray[np.floating], NDArray[np.intp]]:
-    """Evaluate a policy, take the best action for those values, and so on until none is better.
+    """Evaluate a policy, improve it for those values, and repeat until nothing improves.
 
     Parameters
     ----------
@@ -256,7 +256,7 @@ def policy_iteration(mdp: MDP) -> tuple[NDArray[np.floating], NDArray[np.intp]]:
     values : ndarray, shape (S,)
         V*, up to the rounding of floats.
     policy : ndarray of int, shape (S,)
-        The action of each state, the lowest of those that are equally good.
+        The action of each state: the lowest of those that are equally good.
 
     References
     ----------
@@ -269,7 +269,7 @@ def policy_iteration(mdp: MDP) -> tuple[NDArray[np.floating], NDArray[np.intp]]:
     (array([2., 4.]), array([0, 0]))
     """
     states = np.arange(mdp.n_states)
-    # A few cheap sweeps give a good policy to begin with: each evaluation costs S^3.
+    # A few cheap sweeps give a good first policy; each evaluation costs O(S^3).
     _, policy = value_iteration(mdp, horizon=20)
     V = policy_evaluation(mdp, policy)
     while True:
@@ -278,13 +278,13 @@ def policy_iteration(mdp: MDP) -> tuple[NDArray[np.floating], NDArray[np.intp]]:
         better = Q.max(axis=1) > Q[states, policy] + rounding
         policy = np.where(better, Q.argmax(axis=1), policy)
         previous, V = V, policy_evaluation(mdp, policy)
-        # What is better by rounding alone earns no more: equal actions do not take turns for ever.
+        # What is only better by rounding earns no more, so equal actions cannot alternate for ever.
         if not V.sum() > previous.sum():
             return previous, _first_best(Q, rounding)
 
 
 def policy_model(mdp: MDP, policy: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the chain that is left of an MDP when a policy makes its choices.
+    """Return the Markov chain that an MDP becomes under a policy.
 
     Parameters
     ----------
@@ -303,7 +303,7 @@ def policy_model(mdp: MDP, policy: ArrayLike) -> tuple[NDArray[np.float64], NDAr
     Raises
     ------
     ValueError
-        If the shape does not fit, an action does not exist, or a row is no distribution.
+        If the shape does not fit, an action does not exist, or a row is not a distribution.
 
     Examples
     --------
@@ -318,7 +318,7 @@ def policy_model(mdp: MDP, policy: ArrayLike) -> tuple[NDArray[np.float64], NDAr
 
 
 def policy_chances(mdp: MDP, policy: ArrayLike) -> NDArray[np.float64]:
-    """Return a policy of either form as the probabilities of the actions in each state.
+    """Return a policy as the probabilities of the actions in each state.
 
     Parameters
     ----------
@@ -334,7 +334,7 @@ def policy_chances(mdp: MDP, policy: ArrayLike) -> NDArray[np.float64]:
     Raises
     ------
     ValueError
-        If the shape does not fit, an action does not exist, or a row is no distribution.
+        If the shape does not fit, an action does not exist, or a row is not a distribution.
 
     Examples
     --------
@@ -343,7 +343,7 @@ def policy_chances(mdp: MDP, policy: ArrayLike) -> NDArray[np.float64]:
     """
     if np.ndim(policy) != 1:
         return distribution("policy", array("policy", policy, mdp.R.shape))
-    actions = indices("policy", policy, 0, mdp.n_actions - 1)
+    actions = integers("policy", policy, 0, mdp.n_actions - 1)
     if len(actions) != mdp.n_states:
         raise ValueError(f"policy must have shape ({mdp.n_states},), got {actions.shape}")
     return np.eye(mdp.n_actions)[actions]

@@ -1,8 +1,8 @@
-"""Learn what a policy earns from what happened under it: Monte Carlo and temporal differences.
+"""Learn what a policy earns from episodes under it: Monte Carlo and temporal differences.
 
-Each is a backup of `QLearner` with a single action, since there is nothing to maximize over:
-Monte Carlo moves V(s_t) toward the whole return that followed it, TD(0) toward one reward and
-the value of the state after it.
+Both make the backup of `QLearner` with a single action, because there is nothing to maximize over.
+Monte Carlo moves V(s_t) toward the whole return that followed, TD(0) toward one reward plus the
+value of the next state.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu._checks import array, integer, number
-from arkaq_edu._compiled import kernel
 from arkaq_edu.mdp.model import MDP
 from arkaq_edu.mdp.planning import policy_chances
 from arkaq_edu.mdp.q_learning import QLearner
@@ -26,39 +25,19 @@ class Episode(NamedTuple):
     Attributes
     ----------
     s : ndarray of int, shape (T + 1,)
-        The states, the last one included.
+        The states, including the last one.
     a : ndarray of int, shape (T,)
-        The action taken in each but the last.
+        The action taken in each state but the last.
     r : ndarray, shape (T,)
         The reward of each action.
     terminated : bool
-        Whether it ended, or was only cut short.
+        Whether the episode ended; otherwise it was only cut short.
     """
 
     s: NDArray[np.int64]
     a: NDArray[np.int64]
     r: NDArray[np.float64]
     terminated: bool
-
-
-@kernel
-def _walk(cumulative, choices, ends, u, s, a):
-    """Walk from s[0]; return the number of steps taken before an end or the last row of u."""
-    for t in range(len(a)):
-        if ends[s[t]]:
-            return t
-        a[t] = np.searchsorted(choices[s[t]], u[t, 0], side="right")
-        s[t + 1] = np.searchsorted(cumulative[a[t], s[t]], u[t, 1], side="right")
-    return len(a)
-
-
-@kernel
-def _sum_backwards(r, gamma, total):
-    """Fill in total[t] = r[t] + gamma total[t + 1]."""
-    following = 0.0
-    for t in range(len(r) - 1, -1, -1):
-        following = r[t] + gamma * following
-        total[t] = following
 
 
 def simulate(
@@ -78,11 +57,11 @@ def simulate(
     policy : array_like, shape (S,) or (S, A)
         The action of each state, or the probabilities of the actions in each state.
     start : int, optional
-        The first state; without it, one drawn from ``mdp.start``.
+        The first state; without it, one is drawn from ``mdp.start``.
     max_steps : int, default 1000
-        After how many steps an episode is cut short, at least 1.
+        The number of steps after which an episode is cut short, at least 1.
     rng : numpy.random.Generator or int
-        Where the draws come from.
+        The random numbers: two for each of `max_steps`, however long the episode is.
 
     Returns
     -------
@@ -100,14 +79,19 @@ def simulate(
     Episode(s=array([0, 1, 2]), a=array([0, 0]), r=array([1., 2.]), terminated=True)
     """
     rng = np.random.default_rng(rng)
-    a = np.empty(integer("max_steps", max_steps, 1), dtype=np.int64)
-    s = np.empty(len(a) + 1, dtype=np.int64)
+    max_steps = integer("max_steps", max_steps, 1)
     if start is None:
         start = int(rng.choice(mdp.n_states, p=mdp.start))
-    s[0] = integer("start", start, 0, mdp.n_states - 1)
-    choices = policy_chances(mdp, policy).cumsum(axis=1)
-    n = _walk(mdp.cumulative, choices / choices[:, -1:], mdp.ends, rng.random((len(a), 2)), s, a)
-    s, a = s[: n + 1].copy(), a[:n].copy()
+    states, actions = [integer("start", start, 0, mdp.n_states - 1)], []
+    below = policy_chances(mdp, policy).cumsum(axis=1)
+    below /= below[:, -1:]
+    for u, v in rng.random((max_steps, 2)):
+        s = states[-1]
+        if mdp.ends[s]:
+            break
+        actions.append(int(below[s].searchsorted(u, side="right")))
+        states.append(int(mdp.cumulative[actions[-1], s].searchsorted(v, side="right")))
+    s, a = np.array(states), np.array(actions, dtype=np.int64)
     return Episode(s, a, mdp.R[s[:-1], a], bool(mdp.ends[s[-1]]))
 
 
@@ -135,10 +119,11 @@ def discounted_returns(r: ArrayLike, gamma: float) -> NDArray[np.float64]:
     >>> discounted_returns([0, 0, 8], gamma=0.5)
     array([2., 4., 8.])
     """
-    r = array("r", r, (None,))
-    total = np.empty(len(r))
-    _sum_backwards(r, number("gamma", gamma, 0, 1), total)
-    return total
+    gamma, following = number("gamma", gamma, 0, 1), 0.0
+    returns = array("r", r, (None,)).copy()
+    for t in reversed(range(len(returns))):
+        following = returns[t] = returns[t] + gamma * following
+    return returns
 
 
 def monte_carlo(
@@ -153,16 +138,16 @@ def monte_carlo(
     Parameters
     ----------
     episodes : sequence of Episode
-        What happened, each up to its end.
+        The episodes, each up to its end.
     n_states : int
         The number of states.
     gamma : float
         The discount rate, in [0, 1].
     alpha : float, "1/visits" or callable, default "1/visits"
-        The learning rate, as for `QLearner`. The default gives the mean of the returns that
-        followed all visits of a state.
+        The learning rate, as for `QLearner`. The default gives the mean of the returns after all
+        visits of a state.
     initial : float, default 0.0
-        What every V(s) starts from.
+        The first value of every V(s).
 
     Returns
     -------
@@ -171,13 +156,12 @@ def monte_carlo(
     Raises
     ------
     ValueError
-        If an argument is out of range or an episode was cut short: what it would still have earned
-        is not known.
+        If an argument is out of range, or if an episode was cut short: its return is not known.
 
     Notes
     -----
-    In equation 2.10 R_t is the return that follows t. "The reward for time horizon t", as the
-    thesis calls it, would be another thing.
+    R_t in equation 2.10 is the return that follows t, not "the reward for time horizon t", as the
+    thesis calls it.
 
     References
     ----------
@@ -189,13 +173,15 @@ def monte_carlo(
     >>> monte_carlo([episode], n_states=3, gamma=0.5)
     array([4., 8., 0.])
     """
-    learner = QLearner(n_states, 1, alpha, gamma, initial=initial)
     for i, episode in enumerate(episodes):
         if not episode.terminated:
             raise ValueError(f"episodes must have ended, got one cut short at ({i},)")
-        s = episode.s[:-1]
-        learner.replay(s, 0, discounted_returns(episode.r, gamma), s, terminated=True)
-    return learner.Q[:, 0].copy()
+    learner = QLearner(n_states, 1, alpha, gamma, initial=initial)
+    if episodes:
+        s = np.concatenate([episode.s[:-1] for episode in episodes])
+        returns = np.concatenate([discounted_returns(episode.r, gamma) for episode in episodes])
+        learner.replay(s, 0, returns, s, terminated=True)
+    return learner.Q[:, 0]
 
 
 def td0(
@@ -210,7 +196,7 @@ def td0(
     Parameters
     ----------
     episodes : sequence of Episode
-        What happened; an episode may be cut short.
+        The episodes; they may be cut short.
     n_states : int
         The number of states.
     gamma : float
@@ -218,7 +204,7 @@ def td0(
     alpha : float, "1/visits" or callable, default "1/visits"
         The learning rate, as for `QLearner`.
     initial : float, default 0.0
-        What every V(s) starts from.
+        The first value of every V(s).
 
     Returns
     -------
@@ -231,8 +217,8 @@ def td0(
 
     Notes
     -----
-    The thesis prints r + gamma R_t - V(s_t). The return R_t is what one does not have yet after one
-    step: in its place stands the estimate of the state reached, gamma V(s_t+1).
+    The thesis prints r + gamma R_t - V(s_t). But after one step the return R_t is not known yet.
+    The estimate of the next state takes its place: gamma V(s_t+1).
 
     References
     ----------
@@ -246,8 +232,11 @@ def td0(
     array([4., 8., 0.])
     """
     learner = QLearner(n_states, 1, alpha, gamma, initial=initial)
-    for episode in episodes:
-        ended = np.zeros(len(episode.r), dtype=bool)
-        ended[-1:] = episode.terminated
-        learner.replay(episode.s[:-1], 0, episode.r, episode.s[1:], ended)
-    return learner.Q[:, 0].copy()
+    if episodes:
+        s = np.concatenate([episode.s[:-1] for episode in episodes])
+        s_next = np.concatenate([episode.s[1:] for episode in episodes])
+        r = np.concatenate([episode.r for episode in episodes])
+        # Only the last step of an episode ends it.
+        ended = [(np.arange(len(e.r)) == len(e.r) - 1) & e.terminated for e in episodes]
+        learner.replay(s, 0, r, s_next, np.concatenate(ended))
+    return learner.Q[:, 0]

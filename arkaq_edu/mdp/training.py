@@ -1,22 +1,25 @@
 """Learning by doing: the exploration and the exploitation phase of the thesis, made to run.
 
-Figures 4.3 and 4.4 read, line for line::
+Figures 4.3 and 4.4 are one loop, `learn`. `explore` and `exploit` call it with their two ways to
+select an action. Line for line::
 
-    while Q matrix is not converged          until the last backups changed next to nothing
-        select action a                      explore: at random, the untried first (4.3)
+    while Q matrix is not converged          until the last backups changed almost nothing
+        select action a                      explore: at random, untried actions first (4.3)
                                              exploit: Boltzmann, cooling (3.2; 4.4 has "high Q")
-        identify current state s             before a is selected: a depends on it
+        identify current state s             before a is selected, which depends on it
         while current state remains same     at most max_repeat times
             perform action a
-        receive immediate reward r           the rewards of all those steps, discounted to the first
+        receive immediate reward r           the discounted sum of the rewards of all those steps
         receive new state s'
-        evaluate Q[s][a]                     a semi-Markov backup: gamma^k for k steps
-                                             an episode that is over begins anew
+        evaluate Q[s][a]                     a semi-Markov backup: gamma^k for k steps;
+                                             then reset an episode that is over
 
-As printed, the procedures cannot run. Both say "while Q matrix is not converged", though the second
-starts when the first is done; 4.4 selects a before it knows s; an action that never changes the
-state (a kick) would be repeated for ever; nothing resets an episode; and the Boltzmann choice that
-chapter 3 announces is in neither.
+As printed, the procedures cannot run. Both say "while Q matrix is not converged", but the second
+one starts when the first has converged. 4.4 selects a before it knows s. An action that never
+changes the state, such as a kick, would be repeated for ever. Nothing resets an episode. And the
+Boltzmann choice that chapter 3 announces is in neither.
+
+`train` runs the same loop on a known model, compiled.
 """
 
 from __future__ import annotations
@@ -28,8 +31,8 @@ import numpy as np
 from gymnasium.spaces import Discrete
 from numpy.typing import NDArray
 
-from arkaq_edu._checks import integer, number
-from arkaq_edu.mdp.compiled import walk_and_learn
+from arkaq_edu._checks import array, integer, number
+from arkaq_edu.mdp import compiled
 from arkaq_edu.mdp.model import MDP
 from arkaq_edu.mdp.prediction import discounted_returns
 from arkaq_edu.mdp.q_learning import QLearner
@@ -37,14 +40,14 @@ from arkaq_edu.mdp.schedules import Schedule, value_at
 
 
 class Held(NamedTuple):
-    """What came of holding one action while the state remained the same.
+    """The result of holding one action while the state remained the same.
 
     Attributes
     ----------
     rewards : list of float
         The reward of each step, at least one.
     s_next : int
-        The state it led to.
+        The next state.
     terminated, truncated : bool
         Whether the episode ended there, or was cut short there.
     """
@@ -56,21 +59,48 @@ class Held(NamedTuple):
 
 
 class TrainingRun(NamedTuple):
-    """How learning went.
+    """The course of learning.
 
     Attributes
     ----------
     changes : ndarray, shape (backups,)
-        By how much each backup changed its Q(s, a).
+        The change of Q(s, a) by each backup.
     returns : ndarray, shape (episodes,)
-        The sum of the rewards, not discounted, of each episode that was finished.
+        The sum of the rewards, not discounted, of each finished episode.
     lengths : ndarray of int, shape (episodes,)
-        The number of steps of each.
+        The number of steps of each finished episode.
     """
 
     changes: NDArray[np.float64]
     returns: NDArray[np.float64]
     lengths: NDArray[np.int64]
+
+
+class Quiet:
+    """The backups since the last one that changed Q by more than a tolerance.
+
+    Attributes
+    ----------
+    backups : int
+        Their number.
+    pairs : set of (int, int)
+        The pairs (s, a) that they were made for.
+    met : set of int
+        All states that any backup was made for.
+    """
+
+    def __init__(self, tol: float) -> None:
+        self.tol = number("tol", tol, 0)
+        self.backups, self.pairs, self.met = 0, set[tuple[int, int]](), set[int]()
+
+    def note(self, s: int, a: int, change: float) -> None:
+        """Count a backup."""
+        if abs(change) > self.tol:
+            self.backups = 0
+            self.pairs.clear()
+        self.backups += 1
+        self.pairs.add((s, a))
+        self.met.add(s)
 
 
 def hold(env: Any, s: int, a: int, max_repeat: int = 10) -> Held:
@@ -79,13 +109,13 @@ def hold(env: Any, s: int, a: int, max_repeat: int = 10) -> Held:
     Parameters
     ----------
     env : gymnasium.Env
-        With discrete observations, the states, and discrete actions.
+        An environment with discrete observations (the states) and discrete actions.
     s : int
-        The state it is in.
+        The current state.
     a : int
         The action.
     max_repeat : int, default 10
-        After how many steps to stop all the same, at least 1.
+        The largest number of steps, at least 1.
 
     Returns
     -------
@@ -105,7 +135,7 @@ def hold(env: Any, s: int, a: int, max_repeat: int = 10) -> Held:
     >>> import gymnasium
     >>> env = gymnasium.make("CliffWalking-v1")
     >>> s, _ = env.reset(seed=0)
-    >>> hold(env, int(s), a=3, max_repeat=4)  # to the left, where the wall is
+    >>> hold(env, int(s), a=3, max_repeat=4)  # to the left, against the wall
     Held(rewards=[-1.0, -1.0, -1.0, -1.0], s_next=36, terminated=False, truncated=False)
     """
     rewards = []
@@ -115,6 +145,77 @@ def hold(env: Any, s: int, a: int, max_repeat: int = 10) -> Held:
         if s_next != s or terminated or truncated:
             break
     return Held(rewards, int(s_next), bool(terminated), bool(truncated))
+
+
+def learn(
+    env: Any,
+    learner: QLearner,
+    select: Callable[[int, int], int],
+    converged: Callable[[Quiet], bool],
+    *,
+    max_backups: int,
+    tol: float,
+    max_repeat: int,
+    seed: int | None,
+) -> TrainingRun:
+    """Run the loop of figures 4.3 and 4.4, which `explore` and `exploit` share.
+
+    Parameters
+    ----------
+    env, learner, max_backups, tol, max_repeat, seed
+        As for `explore`.
+    select : callable
+        Returns an action for a state s and the number of the backup n = 1, 2, ...
+    converged : callable
+        Returns whether Q has converged, from the backups since the last change above `tol`.
+
+    Returns
+    -------
+    TrainingRun
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range, or the learner's table does not fit the environment.
+
+    Examples
+    --------
+    >>> import gymnasium
+    >>> env = gymnasium.make("CliffWalking-v1")
+    >>> learner = QLearner(48, 4, alpha=1.0, gamma=0.9)
+    >>> limits = {"max_backups": 2, "tol": 0.0, "max_repeat": 1, "seed": 0}
+    >>> learn(env, learner, lambda s, n: 0, lambda quiet: False, **limits).changes  # up, up
+    array([-1., -1.])
+    """
+    n_states, n_actions = learner.Q.shape
+    if not _fits(env.observation_space, n_states) or not _fits(env.action_space, n_actions):
+        raise ValueError(
+            f"env must be Discrete, with the learner's {n_states} states and {n_actions} actions, "
+            f"got observations {env.observation_space} and actions {env.action_space}"
+        )
+    quiet = Quiet(tol)
+    changes, returns, lengths, earned, length = [], [], [], 0.0, 0
+    s = int(env.reset(seed=seed)[0])
+    for n in range(1, integer("max_backups", max_backups, 1) + 1):
+        a = select(s, n)
+        rewards, s_next, terminated, truncated = hold(env, s, a, max_repeat)
+        k = len(rewards)
+        r = float(discounted_returns(rewards, learner.gamma)[0])
+        changes.append(learner.update(s, a, r, s_next, terminated, n_steps=k))
+        quiet.note(s, a, changes[-1])
+        earned, length, s = earned + sum(rewards), length + k, s_next
+        if terminated or truncated:
+            returns.append(earned)
+            lengths.append(length)
+            earned, length, s = 0.0, 0, int(env.reset()[0])
+        if converged(quiet):
+            break
+    return TrainingRun(np.array(changes), np.array(returns, float), np.array(lengths, np.int64))
+
+
+def _fits(space: Any, n: int) -> bool:
+    """Return whether the elements of a space are 0, 1, ... n - 1."""
+    return isinstance(space, Discrete) and (space.start, space.n) == (0, n)
 
 
 def explore(
@@ -131,18 +232,19 @@ def explore(
     Parameters
     ----------
     env : gymnasium.Env
-        With discrete observations, the states, and discrete actions. It is reset first.
+        An environment with discrete observations (the states) and discrete actions. It is reset
+        first.
     learner : QLearner
-        What learns; its generator draws the actions.
+        The learner; its generator draws the actions.
     max_backups : int, default 100000
-        After how many backups to stop all the same, at least 1.
+        The largest number of backups, at least 1.
     tol : float, default 1e-6
-        Q has converged when, since a change greater than this, every action has been tried anew in
-        every state met. Where outcomes are certain, Q is then Q* to within tol / (1 - gamma).
+        Q has converged when, since the last change greater than this, every action has been tried
+        in every known state. If outcomes are certain, Q is then within tol / (1 - gamma) of Q*.
     max_repeat : int, default 10
-        How often an action is repeated at most while the state remains the same.
+        The largest number of steps for which an action is held while the state remains the same.
     seed : int, optional
-        What the environment is first reset with.
+        The seed of the first reset of the environment.
 
     Returns
     -------
@@ -155,8 +257,8 @@ def explore(
 
     Notes
     -----
-    With a learning rate that falls, small changes are also the work of the small rate: then
-    `max_backups` is the better guide.
+    If the learning rate falls, changes also become small because the rate is small. Then rely on
+    `max_backups` instead.
 
     References
     ----------
@@ -168,20 +270,24 @@ def explore(
     >>> env = gymnasium.make("FrozenLake-v1", is_slippery=False)
     >>> learner = QLearner(16, 4, alpha=1.0, gamma=0.5, rng=0)
     >>> run = explore(env, learner, seed=0)
-    >>> learner.Q[0]  # six steps from the goal; the first holds against the wall, ten times
+    >>> learner.Q[0]  # six steps from the goal; the first action is held ten times at the wall
     array([3.05175781e-05, 3.12500000e-02, 3.12500000e-02, 3.05175781e-05])
     >>> exploit(env, learner, max_backups=6).returns
     array([1.])
     """
+    n_actions = learner.Q.shape[1]
 
-    def choose(s: int, n: int) -> int:
+    def select(s: int, n: int) -> int:
         untried = learner.unvisited(s)
-        return int(learner.rng.choice(untried if len(untried) else learner.Q.shape[1]))
+        return int(learner.rng.choice(untried if len(untried) else n_actions))
 
-    def converged(quiet: int, confirmed: set[tuple[int, int]], met: set[int]) -> bool:
-        return len(confirmed) == len(met) * learner.Q.shape[1]
+    def converged(quiet: Quiet) -> bool:
+        return len(quiet.pairs) == len(quiet.met) * n_actions
 
-    return _learn(env, learner, choose, converged, max_backups, tol, max_repeat, seed)
+    return learn(
+        env, learner, select, converged,
+        max_backups=max_backups, tol=tol, max_repeat=max_repeat, seed=seed,
+    )  # fmt: skip
 
 
 def exploit(
@@ -199,21 +305,22 @@ def exploit(
     Parameters
     ----------
     env : gymnasium.Env
-        With discrete observations, the states, and discrete actions. It is reset first.
+        An environment with discrete observations (the states) and discrete actions. It is reset
+        first.
     learner : QLearner
-        What has explored; its generator draws the actions.
+        A learner that has explored; its generator draws the actions.
     temperature : float or callable, default 0.0
-        Of the Boltzmann choice, or a function of the backup n = 1, 2, ... that returns it. 0 is its
-        limit: one of the best actions.
+        The temperature of the Boltzmann choice, or a function of the backup n = 1, 2, ... that
+        returns it. At 0, its limit, one of the best actions is drawn.
     max_backups : int, default 100000
-        After how many backups to stop all the same, at least 1.
+        The largest number of backups, at least 1.
     tol : float, default 1e-6
-        Q has converged when it changed by no more than this in as many backups in a row as it has
-        entries: actions that do not look good are seldom tried, and may never be.
+        Q has converged when it has changed by no more than this in as many backups in a row as it
+        has entries. (Not in every pair, as for `explore`: actions that look bad are rarely tried.)
     max_repeat : int, default 10
-        How often an action is repeated at most while the state remains the same.
+        The largest number of steps for which an action is held while the state remains the same.
     seed : int, optional
-        What the environment is first reset with.
+        The seed of the first reset of the environment.
 
     Returns
     -------
@@ -239,68 +346,17 @@ def exploit(
     array([-13.])
     """
 
-    def choose(s: int, n: int) -> int:
+    def select(s: int, n: int) -> int:
         T = value_at(temperature, n)
         return learner.boltzmann(s, T) if T != 0 else learner.greedy(s)
 
-    def converged(quiet: int, confirmed: set[tuple[int, int]], met: set[int]) -> bool:
-        return quiet >= learner.Q.size
+    def converged(quiet: Quiet) -> bool:
+        return quiet.backups >= learner.Q.size
 
-    return _learn(env, learner, choose, converged, max_backups, tol, max_repeat, seed)
-
-
-def _learn(
-    env: Any,
-    learner: QLearner,
-    choose: Callable[[int, int], int],
-    converged: Callable[[int, set[tuple[int, int]], set[int]], bool],
-    max_backups: int,
-    tol: float,
-    max_repeat: int,
-    seed: int | None,
-) -> TrainingRun:
-    """Run the loop that figures 4.3 and 4.4 share; they differ in how they choose."""
-    tol = number("tol", tol, 0)
-    n_states, n_actions = learner.Q.shape
-    if not _holds(env.observation_space, n_states) or not _holds(env.action_space, n_actions):
-        raise ValueError(
-            f"env must be Discrete, with the learner's {n_states} states and {n_actions} actions, "
-            f"got observations {env.observation_space} and actions {env.action_space}"
-        )
-    changes: list[float] = []
-    episodes: list[tuple[float, int]] = []
-    earned, length = 0.0, 0
-    # Since the last change above tol: how many backups, and of which pairs. And all states met.
-    quiet = 0
-    confirmed: set[tuple[int, int]] = set()
-    met: set[int] = set()
-    s = int(env.reset(seed=seed)[0])
-    for n in range(1, integer("max_backups", max_backups, 1) + 1):
-        a = choose(s, n)
-        held = hold(env, s, a, max_repeat)
-        r = float(discounted_returns(held.rewards, learner.gamma)[0])
-        k = len(held.rewards)
-        changes.append(learner.update(s, a, r, held.s_next, held.terminated, n_steps=k))
-        if abs(changes[-1]) > tol:
-            quiet = 0
-            confirmed.clear()
-        quiet += 1
-        confirmed.add((s, a))
-        met.add(s)
-        earned, length, s = earned + sum(held.rewards), length + k, held.s_next
-        if held.terminated or held.truncated:
-            episodes.append((earned, length))
-            earned, length, s = 0.0, 0, int(env.reset()[0])
-        if converged(quiet, confirmed, met):
-            break
-    returns = np.array([earned for earned, _ in episodes], dtype=np.float64)
-    lengths = np.array([length for _, length in episodes], dtype=np.int64)
-    return TrainingRun(np.array(changes), returns, lengths)
-
-
-def _holds(space: Any, n: int) -> bool:
-    """Return whether a table of n entries has one for each element of a space, and no more."""
-    return isinstance(space, Discrete) and (space.start, space.n) == (0, n)
+    return learn(
+        env, learner, select, converged,
+        max_backups=max_backups, tol=tol, max_repeat=max_repeat, seed=seed,
+    )  # fmt: skip
 
 
 def train(
@@ -310,19 +366,23 @@ def train(
     *,
     temperature: float | Schedule = np.inf,
 ) -> TrainingRun:
-    """Let a learner live in a model, which it does not look at, in one compiled loop.
+    """Let a learner act in a known model, which it does not use, for a number of steps.
+
+    This is `exploit` with ``max_repeat=1`` and without the test for convergence, in one compiled
+    loop. A test holds the two equal.
 
     Parameters
     ----------
     mdp : MDP
-        The world. Episodes start as ``mdp.start`` says and end in ``mdp.ends``.
+        The world. Episodes start by ``mdp.start`` and end in ``mdp.ends``.
     learner : QLearner
-        What learns, with a state and an action for each of the model's; its generator draws all.
+        The learner, with the model's states and actions; its generator draws everything: three
+        numbers for each step.
     n_steps : int
-        How many steps it lives, at least 1; the last episode may stay unfinished.
+        The number of steps, at least 1; the last episode may stay unfinished.
     temperature : float or callable, default infinity
-        Of the Boltzmann choice, or a function of the step n = 1, 2, ... that returns it. Infinity
-        chooses at random, 0 one of the best actions.
+        The temperature of the Boltzmann choice, or a function of the step n = 1, 2, ... that
+        returns it. At infinity actions are random; at 0 one of the best is drawn.
 
     Returns
     -------
@@ -331,8 +391,8 @@ def train(
     Raises
     ------
     ValueError
-        If an argument is out of range, the learner's table has another shape, or every state of
-        the model is an end.
+        If an argument is out of range, the learner's table has another shape or holds a number
+        that is not finite, or every state of the model is an end.
 
     References
     ----------
@@ -349,28 +409,18 @@ def train(
     n_steps = integer("n_steps", n_steps, 1)
     if learner.Q.shape != mdp.R.shape:
         raise ValueError(f"learner must have a table of {mdp.R.shape}, got {learner.Q.shape}")
+    array("Q", learner.Q, mdp.R.shape)
     starts = np.where(mdp.ends, 0.0, mdp.start).cumsum()
     if not starts[-1] > 0:
-        raise ValueError("mdp must start somewhere else than in its ends")
+        raise ValueError("mdp must be able to start in a state that is not an end")
     n_temperatures = n_steps if callable(temperature) else 1
-    temperatures = [value_at(temperature, n + 1) for n in range(n_temperatures)]
-    u = learner.rng.random((n_steps, 3))
-    changes, returns = np.empty((2, n_steps))
-    lengths = np.empty(n_steps, dtype=np.int64)
-    n_episodes = walk_and_learn(
-        learner._pairs,
-        mdp.cumulative,
-        mdp.R,
-        mdp.ends,
-        starts / starts[-1],
-        u,
-        np.array([number("temperature", T, 0) for T in temperatures]),
-        learner._rates(int(learner.visits.max()) + n_steps),
-        learner.gamma,
-        changes,
-        returns,
-        lengths,
-    )
-    if n_episodes < 0:
-        raise ValueError("Q must stay finite")
+    temperatures = [
+        number("temperature", value_at(temperature, n + 1), 0) for n in range(n_temperatures)
+    ]
+    changes, returns, lengths = np.empty(n_steps), np.empty(n_steps), np.empty(n_steps, np.int64)
+    n_episodes = compiled.train(
+        learner.Q, learner.visits, mdp.cumulative, mdp.R, mdp.ends, starts / starts[-1],
+        learner.rng.random((n_steps, 3)), np.array(temperatures), learner.rates(n_steps),
+        learner.gamma, changes, returns, lengths,
+    )  # fmt: skip
     return TrainingRun(changes, returns[:n_episodes].copy(), lengths[:n_episodes].copy())

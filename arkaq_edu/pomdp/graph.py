@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from arkaq_edu._checks import integers
 from arkaq_edu._compiled import kernel
-from arkaq_edu.mdp._indices import indices
 from arkaq_edu.pomdp.model import POMDP
 
 # Up to this size a graph's equations are solved at once, beyond it by repeating them.
@@ -83,11 +83,11 @@ class PolicyGraph:
     """
 
     def __init__(self, actions: ArrayLike, branches: ArrayLike) -> None:
-        self.actions = indices("actions", actions, 0, None)
+        self.actions = integers("actions", actions, 0, None)
         if self.actions.ndim != 1 or not self.actions.size:
             raise ValueError(f"actions must have shape (K,), got {self.actions.shape}")
         K = len(self.actions)
-        self.branches = indices("branches", branches, 0, K - 1)
+        self.branches = integers("branches", branches, 0, K - 1)
         if self.branches.ndim != 2 or len(self.branches) != K:
             raise ValueError(f"branches must have shape ({K}, Z), got {self.branches.shape}")
 
@@ -120,7 +120,7 @@ class PolicyGraph:
         ValueError
             If the graph has actions or observations that the model has not.
         """
-        indices("actions", self.actions, 0, pomdp.n_actions - 1)
+        integers("actions", self.actions, 0, pomdp.n_actions - 1)
         K, Z = self.branches.shape
         if pomdp.n_observations != Z:
             raise ValueError(

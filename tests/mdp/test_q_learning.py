@@ -2,8 +2,6 @@ import copy
 import json
 import math
 import pickle
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -11,7 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from arkaq_edu.mdp import QLearner, compiled
+from arkaq_edu.mdp import (
+    QLearner,
+)
 
 
 def optimal_q(T, R, gamma, sweeps=5000):
@@ -28,9 +28,6 @@ def random_mdp(rng, S, A, deterministic=False):
     else:
         T = rng.dirichlet(np.full(S, 0.5), size=(S, A))
     return T, rng.normal(size=(S, A))
-
-
-# --- the backup -----------------------------------------------------------------------------------
 
 
 def test_chain_learned_backwards_is_exact():
@@ -124,62 +121,6 @@ def test_update_returns_the_change():
     assert learner.update(0, 0, 2.0, 1) == 0.25 * (2.0 + 4.0 - 7.5)
 
 
-@settings(max_examples=20, deadline=None)
-@given(
-    seed=st.integers(0, 2**32 - 1),
-    alpha=st.sampled_from([0.3, 1.0, "1/visits", lambda n: 1 / (1 + n)]),
-)
-def test_replay_is_update_in_order_to_the_last_bit(seed, alpha):
-    rng = np.random.default_rng(seed)
-    n, S, A = 200, 5, 3
-    rows = (
-        rng.integers(S, size=n),
-        rng.integers(A, size=n),
-        rng.normal(size=n),
-        rng.integers(S, size=n),
-        rng.random(n) < 0.1,
-        rng.integers(1, 10, size=n),
-    )
-    one, many = (QLearner(S, A, alpha=alpha, gamma=0.9) for _ in range(2))
-    changes = [one.update(*(x.item() for x in row)) for row in zip(*rows, strict=True)]
-    first = many.replay(*(x[:150] for x in rows))
-    second = many.replay(*(x[150:] for x in rows))
-    assert np.concatenate([first, second]).tolist() == changes
-    assert one.Q.tobytes() == many.Q.tobytes()
-    assert one.visits.tobytes() == many.visits.tobytes()
-
-
-def test_kernels_without_compilation_give_the_same_bits():
-    if not hasattr(compiled.backup, "py_func"):
-        pytest.skip("nothing is compiled here")
-    code = (
-        "import numpy as np; from arkaq_edu.mdp import MDP, QLearner, train\n"
-        "rng = np.random.default_rng(3); q = QLearner(4, 3, 0.3, 0.9, rng=0)\n"
-        "for _ in range(300):\n"
-        "    s, t = map(int, rng.integers(4, size=2)); a = int(rng.integers(3))\n"
-        "    q.update(s, a, rng.normal(), t, rng.random() < .1, int(rng.integers(1, 12)))\n"
-        "q.replay([0, 1], [1, 1], [2.0, 3.0], [1, 0], False)\n"
-        "T = rng.dirichlet(np.ones(4), size=(3, 4))\n"
-        "train(MDP(T, rng.normal(size=(4, 3)), 0.9), q, 500, temperature=0.3)\n"
-        "acts = [q.boltzmann(i % 4, 0.1) for i in range(50)] + [q.greedy(0) for i in range(9)]\n"
-        "print(q.Q.tobytes().hex(), q.visits.tolist(), acts)\n"
-    )
-    outputs = [
-        subprocess.run(
-            [sys.executable, "-c", code],
-            env={"NUMBA_DISABLE_JIT": disable, "PATH": ""},
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout
-        for disable in ("0", "1")
-    ]
-    assert outputs[0] == outputs[1] != ""
-
-
-# --- choosing -------------------------------------------------------------------------------------
-
-
 def test_boltzmann_frequencies_follow_the_stated_probabilities():
     learner = QLearner(2, 4, alpha=1.0, gamma=0.0, rng=11)
     learner.Q[1] = [0.0, 1.0, 2.0, -1.0]
@@ -192,7 +133,7 @@ def test_boltzmann_frequencies_follow_the_stated_probabilities():
 
 
 @given(
-    q=st.lists(st.floats(-1e308, 1e308), min_size=1, max_size=6),
+    q=st.lists(st.floats(-1e100, 1e100), min_size=1, max_size=6),
     temperature=st.floats(0, math.inf, exclude_min=True),
 )
 def test_boltzmann_never_overflows(q, temperature):
@@ -208,22 +149,12 @@ def test_boltzmann_never_overflows(q, temperature):
 
 def test_boltzmann_limits():
     learner = QLearner(1, 4, alpha=1.0, gamma=0.0)
-    learner.Q[0] = [3.0, 1e300, 1e300, -1e300]
+    learner.Q[0] = [3.0, 1e100, 1e100, -1e100]
     assert learner.probabilities(0, 5e-324).tolist() == [0.0, 0.5, 0.5, 0.0]
     assert learner.probabilities(0, math.inf).tolist() == [0.25] * 4
     learner.Q[0] = [3.0, 2.0, 1.0, 0.0]
     np.testing.assert_allclose(learner.probabilities(0, 1e12), 0.25, rtol=1e-11)
     assert learner.probabilities(0, 1e-3)[0] == 1.0
-
-
-def test_boltzmann_of_values_whose_difference_is_no_float():
-    """At a temperature as large as the values the worse has exp(-2) of the better's chance."""
-    learner = QLearner(1, 2, alpha=1.0, gamma=0.0, rng=1)
-    learner.Q[0] = [-1.5e308, 1.5e308]
-    worse = 1 / (1 + math.exp(2))
-    assert learner.probabilities(0, 1.5e308)[0] == pytest.approx(worse)
-    drawn = sum(learner.boltzmann(0, 1.5e308) == 0 for _ in range(2000))
-    assert drawn / 2000 == pytest.approx(worse, abs=0.03)
 
 
 def test_boltzmann_sees_differences_only():
@@ -248,9 +179,6 @@ def test_unvisited_actions_go_one_by_one():
     assert learner.unvisited(1).tolist() == [0, 1, 2]
     learner.replay(0, [0, 2], 0.0, 1, False)
     assert learner.unvisited(0).tolist() == []
-
-
-# --- keeping --------------------------------------------------------------------------------------
 
 
 def run(learner, n):
@@ -314,9 +242,6 @@ def test_restore_names_what_is_missing():
         QLearner(1, 1, 0.5, 0.9).restore({"Q": [[0.0]], "rng": {}})
 
 
-# --- bad input ------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -333,6 +258,11 @@ def test_constructor_refuses(arguments, message):
         QLearner(*arguments)
 
 
+def test_an_initial_value_beyond_all_rewards_is_refused():
+    with pytest.raises(ValueError, match="initial must be a number in"):
+        QLearner(3, 2, 0.5, 0.9, initial=1e101)
+
+
 BAD_UPDATES = [
     ((-1, 0, 1.0, 1), r"s must be an integer in \[0, 2\], got -1"),
     ((3, 0, 1.0, 1), r"s must be an integer in \[0, 2\], got 3"),
@@ -343,22 +273,22 @@ BAD_UPDATES = [
     ((0, 2, 1.0, 1), r"a must be an integer in \[0, 1\], got 2"),
     ((0, 0, 1.0, -1), r"s_next must be an integer in \[0, 2\], got -1"),
     ((0, 0, 1.0, 3, True), r"s_next must be an integer in \[0, 2\], got 3"),
-    ((0, 0, math.nan, 1), "r must be a finite number, got nan"),
-    ((0, 0, math.inf, 1), "r must be a finite number, got inf"),
-    ((0, 0, None, 1), "r must be a finite number, got None"),
+    ((0, 0, math.nan, 1), r"r must be a number in \[-1e\+100, 1e\+100\], got nan"),
+    ((0, 0, math.inf, 1), r"r must be a number in \[-1e\+100, 1e\+100\], got inf"),
+    ((0, 0, None, 1), r"r must be a number in \[-1e\+100, 1e\+100\], got None"),
     ((0, 0, 1.0, 1, False, 0), "n_steps must be an integer >= 1, got 0"),
     ((0, 0, 1.0, 1, False, 1.5), "n_steps must be an integer >= 1, got 1.5"),
-    ((0, 0, 1.5e308, 1), r"r must leave Q\(0, 0\) finite"),
+    ((0, 0, -2e100, 1), r"r must be a number in \[-1e\+100, 1e\+100\], got -2e\+100"),
 ]
 
 
 @pytest.mark.parametrize("alpha", [0.9, "1/visits", lambda n: 0.9])
 @pytest.mark.parametrize(("arguments", "message"), BAD_UPDATES)
 def test_update_refuses_and_learns_nothing(alpha, arguments, message):
-    learner = QLearner(3, 2, alpha=alpha, gamma=1.0, initial=1e308)
+    learner = QLearner(3, 2, alpha=alpha, gamma=1.0, initial=1e99)
     with pytest.raises(ValueError, match=message):
         learner.update(*arguments)
-    assert (learner.Q == 1e308).all() and not learner.visits.any()
+    assert (learner.Q == 1e99).all() and not learner.visits.any()
 
 
 def test_a_schedule_out_of_range_is_named():
@@ -381,6 +311,7 @@ def test_numpy_scalars_and_whole_rewards_are_welcome():
         ((0, 0, [0.0, np.nan], 0, False), r"r must hold finite numbers, got nan at \(1,\)"),
         ((0, 0, 0.0, [0.5], False), "s_next must hold integers, got dtype float64"),
         (([0, 1], [0, 1, 0], 0.0, 0, False), "the columns must have one length"),
+        ((0, 0, [0.0, 1e101], 0, False), r"r must lie in \[-1e\+100, 1e\+100\], got 1e\+101"),
         (([[0]], 0, 0.0, 0, False), r"the columns must have shape \(N,\), got \(1, 1\)"),
         ((0, 0, 0.0, 0, False, [1, 0]), r"n_steps must hold integers >= 1, got 0 at \(1,\)"),
     ],

@@ -1,0 +1,51 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy import stats
+
+from arkaq_edu.mdp import (
+    argmax_shared,
+    softmax,
+)
+
+
+@given(
+    st.lists(st.floats(-1e300, 1e300), min_size=1, max_size=6),
+    st.floats(0, math.inf, exclude_min=True),
+)
+def test_softmax_is_a_distribution_in_the_order_of_the_values(values, temperature):
+    p = softmax(values, temperature)
+    assert p.sum() == pytest.approx(1) and (p >= 0).all()
+    assert (np.diff(p[np.argsort(values)]) >= -1e-15).all()
+
+
+def test_temperature_is_no_probability():
+    """Chapter 3 calls T the chance of a non-greedy action; of two, that is 1 / (1 + e^(d/T))."""
+    for T in (0.2, 0.5, 0.9, 3.0):
+        p = softmax([0.0, 1.0], T)[0]
+        assert p == pytest.approx(1 / (1 + math.exp(1 / T)))
+        assert abs(p - T) > 0.1
+
+
+def test_shared_argmax_shares():
+    draws = argmax_shared(np.tile([1.0, 7.0, 7.0, 0.0, 7.0], (9000, 1)), rng=0)
+    counts = np.bincount(draws, minlength=5)
+    assert counts[[0, 3]].tolist() == [0, 0]
+    assert stats.chisquare(counts[[1, 2, 4]]).pvalue > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: argmax_shared([1.0, math.nan], rng=0), "values must be numbers"),
+        (lambda: argmax_shared([], rng=0), "values must be numbers, at least one in a row"),
+        (lambda: softmax([0.0, math.nan], 1.0), "values must hold finite numbers, got nan"),
+        (lambda: softmax([0.0], math.nan), "temperature must be a number in"),
+    ],
+)
+def test_bad_arguments_are_refused(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
