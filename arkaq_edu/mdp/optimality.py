@@ -14,11 +14,13 @@ from arkaq_edu.mdp.planning import finite_horizon, policy_iteration, policy_mode
 #: The chains of figure 2.2, from the top: the number of steps without a reward, and the reward of
 #: each later step.
 CHAINS = {"upper": (2, 2.0), "middle": (5, 10.0), "lower": (6, 11.0)}
+_DELAYS = tuple(delay for delay, _ in CHAINS.values())
+_REWARDS = tuple(reward for _, reward in CHAINS.values())
 
 
 def delayed_rewards(
-    delays: Sequence[int] = tuple(delay for delay, _ in CHAINS.values()),
-    rewards: Sequence[float] = tuple(reward for _, reward in CHAINS.values()),
+    delays: Sequence[int] = _DELAYS,
+    rewards: Sequence[float] = _REWARDS,
     gamma: float = 0.9,
 ) -> MDP:
     """Return the world of figure 2.2: choose once, wait, then earn the same at every step.

@@ -91,8 +91,8 @@ def simulate(
             break
         actions.append(int(below[s].searchsorted(u, side="right")))
         states.append(int(mdp.cumulative[actions[-1], s].searchsorted(v, side="right")))
-    s, a = np.array(states), np.array(actions, dtype=np.int64)
-    return Episode(s, a, mdp.R[s[:-1], a], bool(mdp.ends[s[-1]]))
+    visited, a = np.array(states), np.array(actions, dtype=np.int64)
+    return Episode(visited, a, mdp.R[visited[:-1], a], bool(mdp.ends[states[-1]]))
 
 
 def discounted_returns(r: ArrayLike, gamma: float) -> NDArray[np.float64]:
