@@ -1,4 +1,4 @@
-"""The automata of the thesis: each a small table, which the agent runs and the figure draws."""
+"""The automata of the thesis: each one small table, which the agent runs and a figure draws."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ DONE = "done"
 
 @dataclass(frozen=True)
 class Automaton:
-    """States, and what leads from one to the next.
+    """States, and the events that lead from one to the next.
 
     Parameters
     ----------
     start : str
-        Where it begins.
+        The first state.
     table : mapping of (state, event) to state
-        It ends in the state "done".
+        The next state. The automaton ends in the state "done".
 
     Examples
     --------
@@ -32,17 +32,17 @@ class Automaton:
 
     @property
     def states(self) -> tuple[str, ...]:
-        """The states that have a way out, in the order of the table."""
+        """All states but the last, in the order of the table."""
         return tuple(dict.fromkeys(state for state, _ in self.table))
 
     def run(self, work: Mapping[str, Callable[[], str]]) -> None:
-        """Do each state's work, which returns an event, until the table leads to "done"."""
+        """Call the function of each state, which returns an event, until the table says "done"."""
         state = self.start
         while state != DONE:
             state = self.table[state, work[state]()]
 
 
-# Figure 5.6. The thesis draws no end; here the phase is over after a number of patterns.
+# Figure 5.6. The thesis draws no end. Here the phase is over after a number of patterns.
 SEGMENTATION = Automaton(
     "supervisor",
     {
@@ -58,7 +58,7 @@ SEGMENTATION = Automaton(
     },
 )
 
-# Figure 5.15, and with it figures 4.3 and 4.4: one loop explores first and exploits later.
+# Figure 5.15, and the loop of figures 4.3 and 4.4: first it explores, later it exploits.
 Q_LEARNING = Automaton(
     "supervisor",
     {
@@ -76,7 +76,7 @@ Q_LEARNING = Automaton(
     },
 )
 
-# Figure 5.34. The robot only looks about: a kick would tell nothing of where the goal can be.
+# Figure 5.34. The robot only turns: a kick says nothing about where the goal can be.
 GOAL_SEGMENTATION = Automaton(
     "supervisor",
     {
@@ -92,8 +92,8 @@ GOAL_SEGMENTATION = Automaton(
     },
 )
 
-# Figure 5.38, which the thesis captions "segmentation". No action is held, for every turn leaves
-# its state; and when the episode is over the supervisor judges where the ball has come to rest.
+# Figure 5.38, whose caption in the thesis says "segmentation". No action is held, since every
+# turn changes the state. When the episode is over, the supervisor judges where the ball stopped.
 GOAL_Q_LEARNING = Automaton(
     "supervisor",
     {

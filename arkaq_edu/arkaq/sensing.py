@@ -1,8 +1,8 @@
-"""From a sighting to a pattern: the Kalman filter's settings, and the scaling of its estimate."""
+"""From a sighting to a pattern: the Kalman filter's settings, and how its estimate is scaled."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,26 +15,31 @@ from arkaq_edu.kalman import KalmanFilter, constant_velocity
 
 @dataclass(frozen=True, eq=False)
 class Sensing:
-    """What the agent assumes of its senses.
+    """What the agent assumes about its senses.
 
     Parameters
     ----------
     low, high : sequence of float, length m
-        The interval of each measurement; it is scaled to [-1, 1] and clipped.
+        The interval of each measurement. It is clipped to it and scaled to [-1, 1].
     A, H, Q, R, P0 : array_like
-        The Kalman filter: n states, m measurements. `R` in the measurement's units squared.
+        The Kalman filter, with n states and m measurements. Covariances are in squared units of
+        the state (Q, P0) and of the measurements (R).
     B : array_like, shape (n, n_actions), optional
-        What each action does to the state, one column an action; the filter's control input is
-        then the action taken. Without it the filter is told nothing of the actions.
+        What each action does to the state, one column per action. The filter's control input is
+        then the action taken. Without `B` the filter does not know the actions.
     range_noise : float
-        A standard deviation of ``range_noise * z[0]**2`` is added to `R` for the first
-        measurement (1/mm): the error of a distance read from a blob's size.
+        The variance of the first measurement is larger by ``(range_noise * z[0]**2)**2``
+        (`range_noise` in 1/mm): the error of a distance that is read from the size of a blob.
+
+    Raises
+    ------
+    ValueError
+        If a parameter has the wrong shape or is out of range.
 
     Notes
     -----
-    `thesis` holds the numbers of section 5.2. `consistent` (for the ball) and `goal` hold numbers
-    measured on the field, with which the filter's innovations are as large as it believes them to
-    be.
+    `thesis` returns the numbers of section 5.2. `consistent` (for the ball) and `goal` return
+    numbers measured on the field. With these, the filter's innovations are as large as it expects.
     """
 
     low: tuple[float, ...]
@@ -56,7 +61,7 @@ class Sensing:
         self.filter()
 
     def __eq__(self, other: object) -> bool:
-        """Compare by value; arrays and lists of the same numbers are equal."""
+        """Compare by value: arrays and lists of the same numbers are equal."""
         return isinstance(other, Sensing) and self.to_json() == other.to_json()
 
     def __hash__(self) -> int:
@@ -67,9 +72,9 @@ class Sensing:
     def thesis(cls) -> Sensing:
         """Return the settings of section 5.2: constant velocity, no control input.
 
-        The thesis gives the diagonals of `R` and `Q` and no `P0`, `B` or time step. The step is
-        one cycle here, and `P0` the prior that knows nothing: the ball anywhere in the interval,
-        its velocity anything up to a footstep a cycle.
+        The thesis gives the diagonals of `R` and `Q`, but no `P0`, `B` or time step. Here the
+        step is one cycle, and `P0` knows nothing: the ball may be anywhere in the interval, and
+        move by up to a footstep per cycle.
         """
         A, H = constant_velocity(1.0, 2)
         return cls(
@@ -86,9 +91,9 @@ class Sensing:
     def consistent(cls) -> Sensing:
         """Return settings measured on the field: the robot knows its own footsteps.
 
-        The ball stands still and the robot walks, so there is no velocity to estimate. `B` holds
-        the mean effect of each action, `Q` the spread about it, `range_noise` the camera's error:
-        `arkaq_edu.experiments.calibrate` measures them, and a test compares.
+        The ball stands still and the robot walks, so there is no velocity to estimate. `B` is
+        the mean effect of each action, `Q` the spread around it, and `range_noise` the camera's
+        error. `arkaq_edu.experiments` measures them (`calibrate`), and a test compares.
         """
         return cls(
             (200.0, -0.5),
@@ -104,10 +109,10 @@ class Sensing:
 
     @classmethod
     def goal(cls) -> Sensing:
-        """Return settings measured on the field for the goal: one measurement, its orientation.
+        """Return settings measured on the field for the goal: its orientation alone.
 
-        A turn to the left moves the goal to the right. `arkaq_edu.experiments.goal.calibrate`
-        measures `B`, `Q` and `R`, and a test compares.
+        A turn to the left moves the goal to the right. `arkaq_edu.experiments.goal` measures `B`,
+        `Q` and `R` (`calibrate`), and a test compares.
         """
         return cls(
             (-0.5,),
@@ -121,7 +126,7 @@ class Sensing:
         )
 
     def filter(self) -> KalmanFilter:
-        """Return the Kalman filter with these settings, its prior in the middle of the interval."""
+        """Return the Kalman filter with these settings, starting in the middle of the interval."""
         x0 = np.zeros(len(np.asarray(self.A)))
         x0[: len(self.low)] = (np.asarray(self.low) + np.asarray(self.high)) / 2
         return KalmanFilter(self.A, self.H, self.Q, self.R, self.B, x0, self.P0)
@@ -156,7 +161,7 @@ class Sensing:
         return np.clip((np.asarray(z) - (low + high) / 2) / ((high - low) / 2), -1.0, 1.0)
 
     def unscale(self, patterns: ArrayLike) -> NDArray[np.float64]:
-        """Return patterns as measurements: the way back from `scale`, inside the interval."""
+        """Return patterns as measurements: the inverse of `scale` inside the interval."""
         low, high = np.asarray(self.low), np.asarray(self.high)
         return np.asarray(patterns) * (high - low) / 2 + (low + high) / 2
 
@@ -170,13 +175,21 @@ class Sensing:
     @classmethod
     def from_json(cls, settings: Mapping[str, Any]) -> Sensing:
         """Return the settings that `to_json` wrote."""
-        kept = dict(settings)
-        return cls(tuple(kept.pop("low")), tuple(kept.pop("high")), **kept)
+        low, high = tuple(settings["low"]), tuple(settings["high"])
+        return cls(**{**settings, "low": low, "high": high})
+
+
+#: The settings that `Arkaq` knows by name.
+PRESETS: dict[str, Callable[[], Sensing]] = {
+    "consistent": Sensing.consistent,
+    "thesis": Sensing.thesis,
+    "goal": Sensing.goal,
+}
 
 
 @dataclass
 class Estimator:
-    """The senses at work: a running estimate of where the ball, or the goal, is.
+    """A running estimate of where the ball, or the goal, is.
 
     Parameters
     ----------
@@ -188,7 +201,7 @@ class Estimator:
     >>> senses = Estimator(Sensing.consistent())
     >>> senses.observe(np.array([2000.0, 0.1, 1.0]), None).round(3)
     array([-0.077,  0.2  ])
-    >>> senses.observe(np.array([0.0, 0.0, 0.0]), 0).round(3)  # unseen: the footstep still counts
+    >>> senses.observe(np.array([0.0, 0.0, 0.0]), 0).round(3)  # not seen: the estimate moves on
     array([-0.126,  0.2  ])
     """
 
@@ -201,18 +214,23 @@ class Estimator:
         self._inputs = None if B is None else np.eye(np.asarray(B).shape[1])
 
     def reset(self) -> None:
-        """Forget: the supervisor has reset the world."""
+        """Forget everything: the supervisor has reset the world."""
         self.kalman.reset()
 
     def observe(self, observation: NDArray[np.floating], action: int | None) -> NDArray[np.float64]:
-        """Take an observation in and return the pattern, shape (m,), each entry in [-1, 1].
+        """Take in an observation and return the pattern.
 
         Parameters
         ----------
         observation : ndarray, shape (m + 1,)
             The measurements, then 1 with a sighting and 0 without.
         action : int or None
-            What led here; None at the start of an episode, where nothing did.
+            The action that led here; None at the start of an episode.
+
+        Returns
+        -------
+        ndarray, shape (m,)
+            The scaled estimate, each entry in [-1, 1].
         """
         if action is not None:
             self.kalman.predict(None if self._inputs is None else self._inputs[action])

@@ -1,4 +1,4 @@
-"""What the thesis never gives: every parameter of learning, named, with its reason."""
+"""The parameters of learning that the thesis never gives, each with its reason."""
 
 from __future__ import annotations
 
@@ -28,37 +28,43 @@ class TrainingSettings:
     Parameters
     ----------
     learning_rate : float
-        ART's update factor eta (eq 4.6), in (0, 1]. With .6 one stream of 6,500 patterns gives
-        all five of the thesis's counts of centers within 15 %.
+        ART's update factor eta (eq 4.6), in (0, 1]. With .6, one stream of 6,500 patterns gives
+        all five counts of centers in the thesis within 15 %.
     patterns : int
-        Patterns the segmentation phase presents.
+        The number of patterns in the segmentation phase.
     period : int
-        Cycles after which the supervisor resets the world while the field is segmented, "so that
-        the segmentation covers all possible points".
+        The supervisor resets the world after so many cycles of the segmentation phase, so that
+        the patterns come from everywhere.
     exploration, exploitation : int
-        Cycles of either phase of Q-learning.
+        The number of cycles in each part of Q-learning.
     hold : int
-        Cycles an action is held at most while the state stays the same. As printed, figure 4.3
-        would hold it for ever where an action cannot change the state.
+        The most cycles for which an action is held while the state stays the same. As printed,
+        figure 4.3 would hold an action forever that cannot change the state.
     gamma : float
-        Discount a cycle, in (0, 1).
+        The discount per cycle, in (0, 1).
     alpha_power, alpha_least : float
-        The n-th visit of a pair learns with max(alpha_least, n ** -alpha_power). It begins at 1,
-        as 4.3 says.
+        The n-th visit of a pair learns with the rate max(alpha_least, n ** -alpha_power). So the
+        rate starts at 1, as section 4.3 says.
     hot, cold : float
-        Boltzmann temperature at the start and the end of exploitation, in units of the reward;
-        it falls geometrically.
+        The Boltzmann temperature at the start and the end of exploitation, in units of the
+        reward. It falls geometrically.
     lost_reward : float
-        What losing the ball for good is worth. Zero: nothing more can be earned then, which is
-        punishment enough under a discount.
+        The reward for losing the ball for good. It is zero by default: nothing more can be earned
+        after that, and with a discount this is punishment enough.
     cycle_reward : float
-        What each cycle is worth beside what the task pays. Where the best kick is worth less than
-        nothing (under half of them score, and a miss costs as much as a goal earns), a discount
-        alone would have the robot turn for ever; a cycle that costs something has it kick.
+        A reward for each cycle, added to the task's own. At the goal a miss costs as much as a
+        goal earns. Where fewer than half of the best kicks score, the best kick is worth less
+        than nothing, and a robot that only discounts would turn forever. A cost per cycle makes
+        it kick.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is out of range.
 
     Notes
     -----
-    The defaults are for the ball; `goal` returns those for the goal.
+    The defaults are for the ball. `goal` returns those for the goal.
 
     Examples
     --------
@@ -97,11 +103,11 @@ class TrainingSettings:
 
     @classmethod
     def goal(cls, **changes: Any) -> TrainingSettings:
-        """Return the parameters for the goal problem, some of them changed.
+        """Return the parameters for the goal, some of them changed.
 
-        A kick says little, for the best still misses four times in ten: so the values average
-        over more visits (`alpha_least`), and the temperature starts higher and stays so. No action
-        is held, for every turn leaves its state. The robot looks about in long periods, see
+        One kick says little, since even the best misses four times in ten. So the values average
+        over more visits (`alpha_least`), and the temperature is higher. No action is held, since
+        every turn changes the state. The robot looks around in long periods; see
         `arkaq_edu.experiments.goal.record_orientations`.
 
         Examples
@@ -122,9 +128,9 @@ class TrainingSettings:
     def to_json(self) -> dict[str, Any]:
         """Return the parameters by name.
 
-        A `cycle_reward` of zero is left out: files written before there was one stay as they are.
+        A `cycle_reward` of zero is left out, as in the files that are older than the parameter.
         """
-        kept = asdict(self)
+        parameters = asdict(self)
         if not self.cycle_reward:
-            del kept["cycle_reward"]
-        return kept
+            del parameters["cycle_reward"]
+        return parameters

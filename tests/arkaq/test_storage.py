@@ -1,0 +1,398 @@
+"""Files of agents, and runs that are interrupted."""
+
+import json
+import math
+import os
+
+import gymnasium
+import numpy as np
+import pytest
+
+from arkaq_edu._paths import data_file
+from arkaq_edu.arkaq import (
+    Arkaq,
+    ExpectedSarsa,
+    Sarsa,
+    TrainingSettings,
+    UniformGrid,
+    storage,
+)
+from arkaq_edu.art import ART2A, EuclideanART
+from arkaq_edu.mdp import QLearner
+from tests.arkaq.brief import (
+    BRIEF,
+    BRIEF_GOAL,
+    arrays,
+    brief_agent,
+    brief_scorer,
+    digest,
+    near_task,
+)
+
+
+def test_a_saved_agent_is_the_same_agent(brief, kept):
+    loaded = Arkaq.load(kept)
+    assert digest(loaded) == digest(brief)
+    for name, values in arrays(brief).items():
+        assert np.array_equal(arrays(loaded)[name], values), name
+        assert arrays(loaded)[name].dtype == values.dtype, name
+    assert (loaded.vigilance, loaded.seed) == (brief.vigilance, brief.seed)
+    assert loaded.learning == brief.learning
+    assert loaded.sensing.to_json() == brief.sensing.to_json()
+    assert loaded.history == brief.history
+
+
+def test_a_file_is_the_same_bytes_each_time_and_holds_no_code(brief, kept, tmp_path):
+    again = tmp_path / "again.npz"
+    Arkaq.load(kept).save(again)
+    assert again.read_bytes() == kept.read_bytes()
+    assert os.listdir(tmp_path) == ["again.npz"]
+    with np.load(kept, allow_pickle=False) as file:
+        assert json.loads(str(file["settings"]))["format"] == 1
+        assert np.array_equal(file["Q"], brief.q.Q)
+
+
+def test_a_scorer_is_kept_as_what_it_is(tmp_path):
+    scorer, path = brief_scorer(), tmp_path / "scorer.npz"
+    scorer.save(path)
+    loaded = Arkaq.load(path)
+    assert digest(loaded) == digest(scorer)
+    assert (loaded.task, loaded.learning) == ("goal", BRIEF_GOAL)
+    walker = Arkaq(0.06, sensing="goal", learning=BRIEF_GOAL, rng=4)
+    with pytest.raises(ValueError, match="another task"):
+        walker.learn(near_task(), path, progress=False)
+
+
+def test_the_file_of_the_ball_is_what_it_was_before_there_was_a_goal(tmp_path):
+    course = data_file("ball_approach.npz")
+    Arkaq.load(course).save(tmp_path / "again.npz")
+    assert (tmp_path / "again.npz").read_bytes() == course.read_bytes()
+
+
+def test_an_agent_that_has_not_learned_can_be_kept_too(tmp_path):
+    path = tmp_path / "young.npz"
+    Arkaq(0.2, learning=BRIEF, rng=4).save(path)
+    assert digest(Arkaq.load(path).learn(near_task(), progress=False)) == digest(brief_agent())
+
+
+@pytest.mark.parametrize("kind", [np.int64, np.int32])
+def test_numpy_numbers_are_settings_too(tmp_path, kind):
+    path = tmp_path / "agent.npz"
+    law = TrainingSettings(
+        patterns=kind(150), exploration=kind(200), exploitation=200, gamma=np.float32(0.5)
+    )
+    Arkaq(np.float64(0.2), learning=law, rng=kind(4)).save(path)
+    assert Arkaq.load(path).learning == law
+
+
+def test_a_save_that_fails_leaves_the_old_file(brief, tmp_path, monkeypatch):
+    path = tmp_path / "agent.npz"
+    brief.save(path)
+    before = path.read_bytes()
+
+    def broken(file, **arrays):
+        file.write(b"half a fi")
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr(np, "savez_compressed", broken)
+    with pytest.raises(OSError, match="no space"):
+        brief.save(path)
+    assert path.read_bytes() == before
+
+
+def refused(path):
+    with pytest.raises(ValueError, match="not an agent") as caught:
+        Arkaq.load(path)
+    return str(path) in str(caught.value)
+
+
+def test_a_truncated_file_is_refused(kept, tmp_path):
+    data, path = kept.read_bytes(), tmp_path / "short.npz"
+    for length in [0, 1, 10, *range(50, len(data), 97), len(data) - 1]:
+        path.write_bytes(data[:length])
+        assert refused(path)
+
+
+def test_a_damaged_file_is_refused_or_unharmed(brief, kept, tmp_path):
+    """A flipped byte is noticed, unless it lies where nothing is kept, as in a file's date."""
+    data, path, rng = kept.read_bytes(), tmp_path / "damaged.npz", np.random.default_rng(0)
+    caught = 0
+    for place in [
+        *range(0, 200, 3),
+        *range(200, len(data) - 600, 23),
+        *range(len(data) - 600, len(data), 5),
+    ]:
+        damaged = bytearray(data)
+        damaged[place] ^= int(rng.integers(1, 256))
+        path.write_bytes(damaged)
+        try:
+            assert digest(Arkaq.load(path)) == digest(brief)
+        except ValueError as error:
+            assert str(path) in str(error)
+            caught += 1
+    assert caught > 150
+
+
+def altered(kept, path, settings=None, **changes):
+    """Write the agent's file again with other contents; None takes an array out."""
+    with np.load(kept) as file:
+        contents = {name: file[name] for name in file.files}
+    changed = json.loads(str(contents["settings"])) | (settings or {})
+    contents["settings"] = np.array(json.dumps(changed))
+    contents |= changes
+    np.savez(path, **{name: values for name, values in contents.items() if values is not None})
+
+
+def test_an_altered_file_is_refused(brief, kept, tmp_path):
+    path = tmp_path / "altered.npz"
+    altered(kept, path)
+    assert digest(Arkaq.load(path)) == digest(brief)
+    Q, visits, centers = brief.q.Q, brief.q.visits, brief.art.cluster_centers_
+    contents = [
+        {"Q": Q * math.nan},
+        {"Q": Q[:-1]},
+        {"Q": Q[0]},
+        {"Q": None, "visits": None, "centers": None, "counts": None, "history": None},
+        {"visits": visits[0]},
+        {"visits": -1 - visits},
+        {"visits": visits[:, :2]},
+        {"visits": None},
+        {"centers": None},
+        {"centers": centers * math.inf},
+        {"centers": np.hstack([centers, centers])},
+        {"counts": brief.art.counts_[1:]},
+        {"counts": -brief.art.counts_},
+        {"history": None},
+        {"history": np.full((3, 4), math.nan)},
+        {"history": np.zeros((3, 5))},
+        {"centers": np.array([{"a": 1}], dtype=object)},
+    ]
+    for changes in contents:
+        altered(kept, path, **changes)
+        assert refused(path), changes
+    settings = [
+        {"format": 2}, {"format": None}, {"phase": "asleep"}, {"done_in_phase": -1},
+        {"done_in_phase": "x"}, {"cycles": None}, {"seed": 1.5}, {"seed": -1}, {"vigilance": 0},
+        {"vigilance": "x"}, {"learning": {"gamma": 2}}, {"learning": {"patience": 2}},
+        {"learning": []}, {"sensing": []}, {"sensing": {"low": [0], "high": [1]}},
+    ]  # fmt: skip
+    for changes in settings:
+        altered(kept, path, settings=changes)
+        assert refused(path), changes
+
+
+def test_what_is_no_agent_at_all_is_refused(tmp_path):
+    text, array, folder = tmp_path / "a.txt", tmp_path / "a.npy", tmp_path / "a"
+    text.write_text("good morning")
+    np.save(array, np.zeros(3))
+    folder.mkdir()
+    other = tmp_path / "other.npz"
+    np.savez(other, settings=np.array("[1, 2]"))
+    assert all(map(refused, (text, array, folder, other)))
+    with pytest.raises(FileNotFoundError):
+        Arkaq.load(tmp_path / "nowhere.npz")
+
+
+class Interrupted(gymnasium.Wrapper):
+    """Ctrl-C at the k-th step, or at the k-th reset."""
+
+    def __init__(self, env, step=-1, reset=-1):
+        super().__init__(env)
+        self.steps, self.resets = step, reset
+
+    def step(self, action):
+        self.steps -= 1
+        if self.steps == 0:
+            raise KeyboardInterrupt
+        return self.env.step(action)
+
+    def reset(self, **options):
+        self.resets -= 1
+        if self.resets == 0:
+            raise KeyboardInterrupt
+        return self.env.reset(**options)
+
+
+@pytest.fixture
+def often(monkeypatch):
+    monkeypatch.setattr(storage, "SECONDS_BETWEEN_CHECKPOINTS", -1.0)
+
+
+@pytest.mark.parametrize(
+    "when",
+    [
+        {"step": 1}, {"step": 20}, {"step": 77}, {"step": 150}, {"step": 190}, {"step": 260},
+        {"step": 420}, {"step": 540}, {"reset": 1}, {"reset": 2}, {"reset": 15}, {"reset": 60},
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("same", [True, False], ids=["same agent", "new agent"])
+def test_an_interrupted_run_comes_to_the_same_result(brief, tmp_path, often, when, same):
+    path = tmp_path / "run.npz"
+    learner = Arkaq(0.2, learning=BRIEF, rng=4)
+    with pytest.raises(KeyboardInterrupt):
+        learner.learn(Interrupted(near_task(), **when), path, progress=False)
+    assert Arkaq.load(path).seed == 4
+    if not same:
+        learner = Arkaq(0.2, learning=BRIEF, rng=4)
+    learner.learn(near_task(), path, progress=False)
+    assert digest(learner) == digest(brief)
+    assert digest(Arkaq.load(path)) == digest(brief)
+
+
+def test_both_phases_are_interrupted_above(brief):
+    segmentation = sum(row[1] for row in brief.history if row[0] == "segmentation")
+    assert 77 < segmentation < 260 < 540 < brief.cycles
+
+
+def test_a_run_interrupted_again_and_again_comes_to_the_same_result(brief, tmp_path, often):
+    path, interruptions = tmp_path / "run.npz", 0
+    while True:
+        learner = Arkaq(0.2, learning=BRIEF, rng=4)
+        try:
+            learner.learn(Interrupted(near_task(), step=45), path, progress=False)
+            break
+        except KeyboardInterrupt:
+            interruptions += 1
+    assert interruptions > 8
+    assert digest(learner) == digest(brief)
+
+
+def test_even_the_first_moments_leave_a_file(tmp_path):
+    path = tmp_path / "run.npz"
+    with pytest.raises(KeyboardInterrupt):
+        brief_agent(env=Interrupted(near_task(), step=30), checkpoint=path)
+    assert Arkaq.load(path).learning == BRIEF
+
+
+def test_a_finished_run_is_not_run_again(brief, tmp_path):
+    path = tmp_path / "run.npz"
+    assert digest(brief_agent(checkpoint=path)) == digest(brief)
+    before = path.read_bytes()
+    untouchable = Interrupted(near_task(), step=1, reset=1)
+    assert digest(brief_agent(env=untouchable, checkpoint=path)) == digest(brief)
+    assert path.read_bytes() == before
+
+
+def test_a_checkpoint_of_another_run_is_refused_and_left_alone(kept):
+    before = kept.read_bytes()
+    others = {
+        "seed": Arkaq(0.2, learning=BRIEF, rng=5),
+        "vigilance": Arkaq(0.25, learning=BRIEF, rng=4),
+        "sensing": Arkaq(0.2, sensing="thesis", learning=BRIEF, rng=4),
+        "learning": Arkaq(0.2, learning=TrainingSettings(patterns=151), rng=4),
+    }
+    for what, other in others.items():
+        with pytest.raises(ValueError, match=f"another {what}") as caught:
+            other.learn(near_task(), kept, progress=False)
+        assert str(kept) in str(caught.value)
+        assert other.q is None
+    assert kept.read_bytes() == before
+
+
+def test_a_damaged_checkpoint_is_refused_and_left_alone(tmp_path):
+    path = tmp_path / "run.npz"
+    path.write_bytes(b"PK\x03\x04 no more than that")
+    with pytest.raises(ValueError, match="not an agent"):
+        brief_agent(checkpoint=path)
+    assert path.read_bytes() == b"PK\x03\x04 no more than that"
+
+
+# Other parts ------------------------------------------------------------------------------------
+
+PARTS = [
+    {"segmenter": UniformGrid((6, 5))},
+    {"segmenter": EuclideanART(0.3, 0.5, max_clusters=4)},
+    {"learner": Sarsa()},
+    {"learner": ExpectedSarsa()},
+    {"segmenter": UniformGrid((4, 4)), "learner": Sarsa()},
+]
+
+
+@pytest.mark.parametrize("parts", PARTS, ids=str)
+@pytest.mark.parametrize("stop", [77, 260, None])
+def test_other_parts_of_the_house_are_saved_whole_and_resumed(parts, stop, tmp_path, often):
+    path = tmp_path / "agent.npz"
+    once = Arkaq(learning=BRIEF, rng=4, **parts).learn(near_task(), progress=False)
+    if stop is not None:
+        with pytest.raises(KeyboardInterrupt):
+            env = Interrupted(near_task(), step=stop)
+            Arkaq(learning=BRIEF, rng=4, **parts).learn(env, path, progress=False)
+        Arkaq(learning=BRIEF, rng=4, **parts).learn(near_task(), path, progress=False)
+    else:
+        once.save(path)
+    loaded = Arkaq.load(path)
+    assert digest(loaded) == digest(once)
+    assert type(loaded.art) is type(once.art) and type(loaded.q) is type(once.q)
+    assert loaded.art.get_params() == once.art.get_params()
+    again = tmp_path / "again.npz"
+    loaded.save(again)
+    assert again.read_bytes() == path.read_bytes()
+
+
+class MyGrid(UniformGrid):
+    """A segmenter that the package does not know."""
+
+
+class MyLearner(Sarsa):
+    """A learner that the package does not know."""
+
+
+@pytest.mark.parametrize(
+    ("parts", "words"),
+    [
+        ({"segmenter": MyGrid((6, 5))}, "segmenter must be one of .*UniformGrid.*, got MyGrid"),
+        ({"segmenter": ART2A(0.98, 0.1)}, "segmenter must be one of .*, got ART2A"),
+        ({"learner": MyLearner()}, "learner must be one of .*Sarsa.*, got MyLearner"),
+    ],
+)
+def test_parts_of_ones_own_are_refused_by_name_before_any_work(parts, words, tmp_path):
+    path = tmp_path / "agent.npz"
+    agent = Arkaq(learning=BRIEF, rng=4, **parts)
+    with pytest.raises(ValueError, match=words):
+        agent.learn(Interrupted(near_task(), reset=1), path, progress=False)
+    agent.learn(near_task(), progress=False)
+    with pytest.raises(ValueError, match=words):
+        agent.save(path)
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_part_that_is_set_later_is_saved_as_what_it_is_or_refused(tmp_path):
+    path = tmp_path / "agent.npz"
+    agent = brief_agent()
+    learned = agent.art
+    agent.art = MyGrid((6, 5))
+    with pytest.raises(ValueError, match="got MyGrid"):
+        agent.save(path)
+    parameters = {"vigilance": 0.7, "learning_rate": "count", "max_clusters": 50}
+    agent.art = EuclideanART.from_centers(learned.cluster_centers_, learned.counts_, **parameters)
+    agent.save(path)
+    assert Arkaq.load(path).art.get_params() == parameters
+    agent.art, agent.q = learned, QLearner(learned.n_clusters_, 3, 0.1, 0.9)
+    with pytest.raises(ValueError, match="got QLearner"):
+        agent.save(path)
+
+
+def test_a_checkpoint_with_other_parts_is_refused(kept):
+    before = kept.read_bytes()
+    for parts in PARTS:
+        name = next(iter(parts))
+        with pytest.raises(ValueError, match=f"another {name}"):
+            Arkaq(0.2, learning=BRIEF, rng=4, **parts).learn(near_task(), kept, progress=False)
+    assert kept.read_bytes() == before
+
+
+def test_an_unknown_part_in_a_file_is_refused(brief, kept, tmp_path):
+    path = tmp_path / "altered.npz"
+    for settings in (
+        {"segmenter": {"class": "os.system"}},
+        {"segmenter": {"class": "UniformGrid", "cells": [2, 2]}},
+        {"segmenter": {"class": "UniformGrid", "cells": [0]}},
+        {"segmenter": {"class": "EuclideanART", "size": 1}},
+        {"segmenter": []},
+        {"learner": {"class": "MyLearner"}},
+        {"learner": {"class": "Sarsa", "speed": 2}},
+    ):
+        altered(kept, path, settings=settings)
+        assert refused(path), settings
+    altered(kept, path, settings={"learner": {"class": "Sarsa"}})
+    assert digest(Arkaq.load(path)) == digest(brief)
