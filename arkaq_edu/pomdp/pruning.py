@@ -107,12 +107,12 @@ def needed_sums(
         mass = inside.sum(axis=1)
         points = np.concatenate([points, inside[mass > 0] / mass[mass > 0, np.newaxis]])
     eps = max(tol / scale, ROUNDING)
-    word_before_compiling(linear_program.needed_sums, "the loops of pruning")
+    word_before_compiling(linear_program.prune_sums, "the loops of pruning")
     apart = _apart(A, B)
     room = 2 * (len(A) + len(B)) + 64
     while True:
         pairs, beliefs = np.empty((room, 2), np.int64), np.empty((room, len(decides)))
-        count = linear_program.needed_sums(A, B, eps, points, apart, pairs, beliefs)
+        count = linear_program.prune_sums(A, B, eps, points, apart, pairs, beliefs)
         if count >= 0:
             break
         points = np.concatenate([points, beliefs])
@@ -189,7 +189,7 @@ def gain(A: Floats, C: Floats, low: float = -np.inf) -> tuple[float, Floats, Flo
     A, C = A - C[0], C - C[0]
     scale = float(max(np.abs(A).max(), np.abs(C).max(), np.finfo(float).tiny))
     belief, mixture = np.full(S, 1 / S), np.zeros(K)
-    bound = linear_program.furthest(
+    bound = linear_program.greatest_gain(
         A / scale, np.ascontiguousarray(C.T / scale), low / scale, belief, mixture
     )
     return float(bound * scale) if mixture.any() else low, belief, mixture
