@@ -1,4 +1,4 @@
-"""An agent that knows what it did and what it saw, and acts on the belief that follows."""
+"""An agent that keeps a belief and acts on it."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from arkaq_edu.pomdp.value import ValueFunction
 
 
 class BeliefAgent:
-    """Keep the belief, and take the action that a value function holds best for it.
+    """Keep the belief, and take the action that is best for it by a value function.
 
     Parameters
     ----------
     pomdp : POMDP
         The model of the world.
     value_function : ValueFunction
-        What each belief is worth: of `solve_pomdp`, or `lower` of `solve_point_based`. One with a
-        finite horizon recedes: every step is taken as if all of it were still to go.
+        The value of each belief: from `solve_pomdp`, or `lower` from `solve_point_based`. A finite
+        horizon recedes: every action is chosen as if the whole horizon were still to go.
 
     Attributes
     ----------
     belief : ndarray, shape (S,)
-        What is known of the state.
+        What is known about the state.
 
     Raises
     ------
@@ -59,17 +59,17 @@ class BeliefAgent:
         self.reset()
 
     def reset(self, belief: ArrayLike | None = None) -> None:
-        """Forget everything: begin at the start of the POMDP, or at another belief.
+        """Go back to the belief at the start of the POMDP, or to another belief.
 
         Parameters
         ----------
         belief : array_like, shape (S,), optional
-            Where to begin.
+            The new belief.
 
         Raises
         ------
         ValueError
-            If `belief` is no distribution over the states.
+            If `belief` is not a distribution over the states.
         """
         if belief is None:
             belief = self.pomdp.start
@@ -77,12 +77,12 @@ class BeliefAgent:
         self._action: int | None = None
 
     def act(self) -> int:
-        """Return the best action for the belief, and remember that it is taken."""
+        """Return the best action for the belief, and remember it for `observe`."""
         self._action = self.value_function.action(self.belief)
         return self._action
 
     def observe(self, z: int) -> None:
-        """Take in what was observed after the last action (equation 2.15).
+        """Update the belief with what was observed after the last action (equation 2.15).
 
         Parameters
         ----------

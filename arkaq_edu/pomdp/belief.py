@@ -1,7 +1,8 @@
-"""Belief states: what is known of a state that cannot be seen, after what was done and observed."""
+"""Belief states: what is known about a hidden state from the actions and observations so far."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from arkaq_edu._checks import array, distribution, integer
 from arkaq_edu.pomdp.model import POMDP
 
+Floats = NDArray[np.float64]
+
 
 class Successors(NamedTuple):
     """Where one action can take a belief.
@@ -17,31 +20,59 @@ class Successors(NamedTuple):
     Attributes
     ----------
     chances : ndarray, shape (Z,)
-        How likely each observation is.
+        The probability of each observation.
     beliefs : ndarray, shape (Z, S)
-        The belief after each; a row of NaN where the observation cannot happen.
+        The belief after each; a row of NaN if the observation cannot happen.
     """
 
-    chances: NDArray[np.float64]
-    beliefs: NDArray[np.float64]
+    chances: Floats
+    beliefs: Floats
+
+
+class Trajectory(NamedTuple):
+    """The beliefs along a history of actions and observations.
+
+    Attributes
+    ----------
+    beliefs : list of ndarray, shape (S,)
+        The belief at the start, then after each half step: predicted, corrected, predicted, ...
+    steps : list of tuple of int
+        The action and the observation of each complete step.
+    pending : int or None
+        The last action, if its observation has not come yet.
+    """
+
+    beliefs: list[Floats]
+    steps: list[tuple[int, int]]
+    pending: int | None
 
 
 class Calibration(NamedTuple):
-    """What became of the claims of beliefs, sorted by what was claimed.
+    """How often claims came true, sorted by the claimed probability.
 
     Attributes
     ----------
     claimed : ndarray, shape (n,)
         The mean claim of each bin.
     held : ndarray, shape (seeds, n)
-        Which part of the claims in it came true, a row for each seed; NaN where it made none.
+        The share of the claims in the bin that came true, a row for each seed; NaN if it made none.
     """
 
-    claimed: NDArray[np.float64]
-    held: NDArray[np.float64]
+    claimed: Floats
+    held: Floats
+
+    @property
+    def mean(self) -> Floats:
+        """The mean of `held` over the seeds, shape (n,)."""
+        return np.nanmean(self.held, axis=0)
+
+    @property
+    def std(self) -> Floats:
+        """The standard deviation of `held` over the seeds, shape (n,)."""
+        return np.nanstd(self.held, axis=0)
 
 
-def predict(pomdp: POMDP, b: ArrayLike, a: int) -> NDArray[np.float64]:
+def predict(pomdp: POMDP, b: ArrayLike, a: int) -> Floats:
     """Return Pr(s' | b, a): the belief after an action, before anything is observed.
 
     Parameters
@@ -60,7 +91,7 @@ def predict(pomdp: POMDP, b: ArrayLike, a: int) -> NDArray[np.float64]:
     Raises
     ------
     ValueError
-        If `b` is no distribution over the states or there is no such action.
+        If `b` is not a distribution over the states or there is no such action.
 
     References
     ----------
@@ -72,10 +103,11 @@ def predict(pomdp: POMDP, b: ArrayLike, a: int) -> NDArray[np.float64]:
     >>> predict(pomdp, [0.5, 0.5], 0)
     array([0.05, 0.95])
     """
-    return _belief(pomdp, b) @ pomdp.T[integer("a", a, 0, pomdp.n_actions - 1)]
+    b, T = _belief(pomdp, b), pomdp.T
+    return b @ T[integer("a", a, 0, pomdp.n_actions - 1)]
 
 
-def belief_update(pomdp: POMDP, b: ArrayLike, a: int, z: int) -> NDArray[np.float64]:
+def belief_update(pomdp: POMDP, b: ArrayLike, a: int, z: int) -> Floats:
     """Return the belief after action `a` and observation `z`, by Bayes' rule (equation 2.15).
 
     Parameters
@@ -97,14 +129,14 @@ def belief_update(pomdp: POMDP, b: ArrayLike, a: int, z: int) -> NDArray[np.floa
     Raises
     ------
     ValueError
-        If `b` is no distribution over the states, an index does not exist, or `z` cannot be
+        If `b` is not a distribution over the states, an index does not exist, or `z` cannot be
         observed after `a` from this belief.
 
     Notes
     -----
-    Where the thesis prints otherwise: in 2.13 and 2.15 the observation is that of time t, as its
-    text says, not t - 1; and the sum of 2.15 holds both b(s) and Pr(s_{t-1} | a, b), which are the
-    same thing: with both, the belief before is counted twice.
+    This differs from the printed equations in two places. In 2.13 and 2.15 the observation is that
+    of time t, as the text says, not of t - 1. And the sum of 2.15 holds both b(s) and
+    Pr(s_{t-1} | a, b), which are the same: with both, the belief before is counted twice.
 
     References
     ----------
@@ -113,7 +145,7 @@ def belief_update(pomdp: POMDP, b: ArrayLike, a: int, z: int) -> NDArray[np.floa
 
     Examples
     --------
-    The ball is left or right of the robot; a look errs in one of ten cases.
+    The ball is left or right of the robot. A look errs in one of ten cases.
 
     >>> pomdp = POMDP(T=[np.eye(2)], O=[[[0.9, 0.1], [0.1, 0.9]]], R=[[0], [0]], gamma=0.9)
     >>> once = belief_update(pomdp, [0.5, 0.5], 0, 0)
@@ -121,8 +153,11 @@ def belief_update(pomdp: POMDP, b: ArrayLike, a: int, z: int) -> NDArray[np.floa
     >>> once, twice.round(3)
     (array([0.9, 0.1]), array([0.988, 0.012]))
     """
-    joint = predict(pomdp, b, a) * pomdp.O[a, :, integer("z", z, 0, pomdp.n_observations - 1)]
-    chance = joint.sum()
+    O = pomdp.O  # noqa: E741
+    predicted = predict(pomdp, b, a)
+    z = integer("z", z, 0, pomdp.n_observations - 1)
+    joint = O[a, :, z] * predicted  # the numerator of equation 2.15
+    chance = joint.sum()  # the denominator: Pr(z | a, b)
     if not chance > 0:
         raise ValueError(
             f"z must be an observation that can follow: {pomdp.observations[z]!r} has probability "
@@ -151,7 +186,7 @@ def successors(pomdp: POMDP, b: ArrayLike, a: int) -> Successors:
     Raises
     ------
     ValueError
-        If `b` is no distribution over the states or there is no such action.
+        If `b` is not a distribution over the states or there is no such action.
 
     References
     ----------
@@ -165,15 +200,89 @@ def successors(pomdp: POMDP, b: ArrayLike, a: int) -> Successors:
     (array([0.5, 0.5]), array([[0.9, 0.1],
            [0.1, 0.9]]))
     """
-    joint = (predict(pomdp, b, a)[:, np.newaxis] * pomdp.O[a]).T
+    joint = pomdp.O[a].T * predict(pomdp, b, a)  # equation 2.15 for every z, shape (Z, S)
     chances = joint.sum(axis=1)
     beliefs = np.full(joint.shape, np.nan)
     np.divide(joint, chances[:, np.newaxis], out=beliefs, where=chances[:, np.newaxis] > 0)
     return Successors(chances, beliefs)
 
 
-def expected_rewards(pomdp: POMDP, b: ArrayLike) -> NDArray[np.float64]:
-    """Return rho(b, a) = sum_s b(s) R(s, a) of every action (equation 2.17).
+def trajectory(pomdp: POMDP, history: Iterable[str | None], seed: int = 0) -> Trajectory:
+    """Return the beliefs along a history: an action, an observation, an action, ...
+
+    Parameters
+    ----------
+    pomdp : POMDP
+        The model. Its start is the belief before the first action.
+    history : iterable of (str or None)
+        The names of actions and observations, in turn. An observation that is None is drawn with
+        its probability given the belief.
+    seed : int, default 0
+        The seed of these draws. Each depends on the seed and on the number of its step only.
+
+    Returns
+    -------
+    Trajectory
+
+    Raises
+    ------
+    ValueError
+        If a name does not exist, or an observation cannot follow.
+
+    References
+    ----------
+    Thesis 2.3.2 (equation 2.15).
+
+    Examples
+    --------
+    >>> from arkaq_edu.pomdp import problem
+    >>> trajectory(problem("floors"), ["down", "dark", "down"]).beliefs[-1]
+    array([0.  , 0.  , 0.25, 0.75])
+    """
+    beliefs: list[Floats] = [pomdp.start]
+    steps: list[tuple[int, int]] = []
+    pending: int | None = None
+    for name in history:
+        if pending is None:
+            pending = _index("action", name, pomdp.actions)
+            beliefs.append(predict(pomdp, beliefs[-1], pending))
+            continue
+        if name is None:
+            chances = beliefs[-1] @ pomdp.O[pending]
+            rng = np.random.default_rng([seed, len(steps)])
+            z = int(rng.choice(pomdp.n_observations, p=chances / chances.sum()))
+        else:
+            z = _index("observation", name, pomdp.observations)
+        beliefs.append(belief_update(pomdp, beliefs[-2], pending, z))
+        steps.append((pending, z))
+        pending = None
+    return Trajectory(beliefs, steps, pending)
+
+
+def entropy(b: ArrayLike) -> float:
+    """Return the uncertainty of a belief in bits: 0 if it is certain, 1 for two equal chances.
+
+    Parameters
+    ----------
+    b : array_like, shape (S,)
+        The belief.
+
+    Returns
+    -------
+    float
+
+    Examples
+    --------
+    >>> entropy([0.5, 0.5]), entropy([1.0, 0.0])
+    (1.0, 0.0)
+    """
+    p = np.asarray(b, dtype=float)
+    p = p[p > 0]
+    return abs(float(p @ np.log2(p)))
+
+
+def expected_rewards(pomdp: POMDP, b: ArrayLike) -> Floats:
+    """Return rho(b, a) = sum_s b(s) R(s, a) for every action (equation 2.17).
 
     Parameters
     ----------
@@ -189,7 +298,7 @@ def expected_rewards(pomdp: POMDP, b: ArrayLike) -> NDArray[np.float64]:
     Raises
     ------
     ValueError
-        If `b` is no distribution over the states.
+        If `b` is not a distribution over the states.
 
     References
     ----------
@@ -207,16 +316,16 @@ def expected_rewards(pomdp: POMDP, b: ArrayLike) -> NDArray[np.float64]:
 
 
 def calibration(claims: ArrayLike, true: ArrayLike, edges: ArrayLike) -> Calibration:
-    """Return how often what was claimed with some probability came true.
+    """Return how often claims came true, sorted by the claimed probability.
 
     Parameters
     ----------
     claims : array_like, shape (seeds, T)
-        Probabilities that were claimed.
+        The claimed probabilities.
     true : array_like of bool, shape (seeds, T)
-        Whether each came true.
+        Whether each claim came true.
     edges : array_like, shape (k,)
-        Where one bin of claims ends and the next begins, rising; a bin without claims is left out.
+        The borders between the bins of claims, rising. Bins without claims are left out.
 
     Returns
     -------
@@ -251,5 +360,11 @@ def calibration(claims: ArrayLike, true: ArrayLike, edges: ArrayLike) -> Calibra
     return Calibration((here * p).sum(axis=(1, 2)) / made.sum(axis=0), held)
 
 
-def _belief(pomdp: POMDP, b: ArrayLike) -> NDArray[np.float64]:
+def _belief(pomdp: POMDP, b: ArrayLike) -> Floats:
     return distribution("b", array("b", b, (pomdp.n_states,)))
+
+
+def _index(kind: str, name: str | None, names: tuple[str, ...]) -> int:
+    if name not in names:
+        raise ValueError(f"{kind} must be one of {', '.join(names)}, got {name!r}")
+    return names.index(name)

@@ -1,4 +1,4 @@
-"""Models from files in Cassandra's .POMDP format, models into such files, and the course's own."""
+"""Read and write models in Cassandra's .POMDP format; the course's own problems."""
 
 from __future__ import annotations
 
@@ -8,14 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arkaq_edu._paths import course_folder, write_whole
-from arkaq_edu.pomdp.cassandra import (
-    MOST_BYTES,
-    PREAMBLE,
-    RESERVED,
-    WORD,
-    PomdpFormatError,
-    Reader,
-)
+from arkaq_edu.pomdp.cassandra import KINDS, MOST_BYTES, RESERVED, WORD, PomdpFormatError, parse
 from arkaq_edu.pomdp.model import POMDP
 
 
@@ -30,44 +23,44 @@ def read_pomdp(path: Path | str) -> POMDP:
     Returns
     -------
     POMDP
-        Costs (``values: cost``) become rewards below zero. A reward that depends on the next state
-        and on the observation becomes the one expected: R(s, a) = sum_t T(a, s, t) sum_z O(a, t, z)
-        R(a, s, t, z). A file without observations, an MDP, becomes a POMDP that sees its state.
+        Costs (``values: cost``) become negative rewards. A reward that depends on the next state or
+        the observation becomes its expectation: R(s, a) = sum_t T(a, s, t) sum_z O(a, t, z)
+        R(a, s, t, z). A file without observations, an MDP, becomes a POMDP whose state is seen.
 
     Raises
     ------
     PomdpFormatError
-        If the file is not as the format has it, a row of probabilities does not sum to 1, or the
-        discount is outside [0, 1); with the line and the column, and what was expected there.
+        If the file does not follow the format, a row of probabilities does not sum to 1, or the
+        discount is outside [0, 1). It names the line, the column, and what was expected there.
     OSError
-        If there is no such file, or it may not be read.
+        If the file does not exist or cannot be read.
 
     Notes
     -----
-    The format: a file begins, in any order, with ``discount: 0.95``, ``values: reward`` (or
-    ``cost``), and ``states:``, ``actions:`` and ``observations:``, each followed by names or by a
-    count. Then, if not uniform, comes the belief at the start: ``start:`` with one probability per
+    A file begins, in any order, with ``discount: 0.95``, ``values: reward`` (or ``cost``), and
+    ``states:``, ``actions:`` and ``observations:``, each followed by names or by a count. Then
+    comes the belief at the start, if it is not uniform: ``start:`` with one probability for each
     state, with ``uniform`` or with one state; ``start include:`` or ``start exclude:`` with states.
     The rest are entries of T(a, s, t), O(a, t, z) and R(a, s, t, z), such as
 
     =============================  ===========================================================
     ``T: listen : left : left 1``  one entry
-    ``T: listen : left``           a row: as many numbers, ``uniform`` or ``reset`` (the start)
+    ``T: listen : left``           a row: its numbers, ``uniform`` or ``reset`` (the start)
     ``T: listen``                  a matrix: its numbers row by row, ``uniform`` or ``identity``
     =============================  ===========================================================
 
-    Likewise ``O`` (with ``uniform`` only) and ``R`` (numbers only; from one entry to a matrix over
-    the next state and the observation). States, actions and observations go by name or by number,
-    from 0; ``*`` is all of them. What is not given is 0; what is given twice, the later counts. A
-    ``#`` begins a comment. Blanks and the ends of lines only separate.
+    ``O`` is written likewise, with ``uniform`` only, and ``R`` with numbers only, from one entry to
+    a matrix over the next state and the observation. States, actions and observations go by name or
+    by number, from 0; ``*`` stands for all of them. What is not given is 0. What is given twice
+    takes its last value. A ``#`` begins a comment. Blanks and line ends only separate.
 
-    Rows whose sum is within 1e-4 of 1, as printed decimals leave them, are divided by it. Refused
-    because no table for them would fit: a file above 128 MiB, more than 65,536 states, actions or
-    observations, and a table of more than 2^24 entries (R grows to four dimensions only where it
-    depends on all four).
+    Rows whose sum is within 1e-4 of 1, as rounded decimals leave them, are divided by it. Files
+    that would need too much memory are refused: more than 128 MiB, more than 65,536 states, actions
+    or observations, or a table of more than 2^24 entries (R gets four dimensions only if it depends
+    on all four).
 
-    A discount of 1 is in the format, but has no finite value over a future without end: it is
-    refused. Put one below 1, such as 0.999, in its place.
+    The format allows a discount of 1, but with it the values of an endless future are not finite.
+    It is refused; use a value such as 0.999 instead.
 
     References
     ----------
@@ -85,9 +78,9 @@ def read_pomdp(path: Path | str) -> POMDP:
     """
     if (size := Path(path).stat().st_size) > MOST_BYTES:
         raise PomdpFormatError(f"expected at most {MOST_BYTES} bytes, got {size}", str(path), 1, 1)
-    # What is no UTF-8 can stand in comments alone, and nobody reads those here.
+    # Bytes that are not UTF-8 can only occur in comments, which are skipped.
     text = Path(path).read_text(encoding="utf-8-sig", errors="replace")
-    return Reader(str(path), text).model()
+    return parse(str(path), text)
 
 
 def problem(name: str) -> POMDP:
@@ -96,7 +89,7 @@ def problem(name: str) -> POMDP:
     Parameters
     ----------
     name : str
-        The name of the file, without its ending.
+        The name of the file, without its extension.
 
     Returns
     -------
@@ -105,7 +98,7 @@ def problem(name: str) -> POMDP:
     Raises
     ------
     ValueError
-        If there is none of that name; the message names those there are.
+        If there is no such problem. The message lists all of them.
 
     Examples
     --------
@@ -122,20 +115,22 @@ def problem(name: str) -> POMDP:
 
 
 def write_pomdp(pomdp: POMDP, path: Path | str) -> None:
-    """Write a POMDP to a file in Cassandra's format; `read_pomdp` gives the same model, to the bit.
+    """Write a POMDP to a file in Cassandra's format.
+
+    `read_pomdp` reads the same model back, to the last bit.
 
     Parameters
     ----------
     pomdp : POMDP
         The model.
     path : path
-        The file. It is written whole or not at all.
+        The file. If writing fails, it is left as it was.
 
     Raises
     ------
     ValueError
-        If a name is none in this format: letters, digits, ``_`` and ``-``, a letter first, and no
-        word of the format's own. Names that are the numbers from 0 are written as a count.
+        If the format does not allow a name. A name is a letter, then letters, digits, ``_`` and
+        ``-``, and not a word of the format. Names that are the numbers from 0 become a count.
     OSError
         If the file cannot be written.
 
@@ -154,7 +149,7 @@ def write_pomdp(pomdp: POMDP, path: Path | str) -> None:
     True
     """
     lines = [f"discount: {pomdp.gamma!r}", "values: reward"]
-    lines += [f"{kind}: {_declared(kind, getattr(pomdp, kind))}" for kind in PREAMBLE[2:]]
+    lines += [f"{kind}: {_declared(kind, getattr(pomdp, kind))}" for kind in KINDS]
     lines += ["start:", _row(pomdp.start), ""]
     for a in range(pomdp.n_actions):
         lines += [f"T: {a}", *map(_row, pomdp.T[a]), "", f"O: {a}", *map(_row, pomdp.O[a]), ""]

@@ -1,4 +1,4 @@
-"""Policy graphs: plans without an end, that go on among themselves."""
+"""Policy graphs: plans without an end, in which every observation leads to another plan."""
 
 from __future__ import annotations
 
@@ -9,15 +9,17 @@ from arkaq_edu._checks import integers
 from arkaq_edu._compiled import kernel
 from arkaq_edu.pomdp.model import POMDP
 
-# Up to this size a graph's equations are solved at once, beyond it by repeating them.
+# Up to this many unknowns the equations of a graph are solved as a linear system. Larger systems
+# are slow, and repeating the equations is faster.
 LARGE = 1000
 
 
 @kernel
 def follow(steps, rewards, actions, branches, enough, most, values):
-    """Repeat the equations of a policy graph until its values change by no more than `enough`.
+    """Repeat the equations of a policy graph until no value changes by more than `enough`.
 
-    `steps[a, z, s, t]` is gamma T(s, a, t) O(t, a, z) and `rewards[a, s]` is R(s, a).
+    `steps` and `rewards` come from `steps_and_rewards`; `values`, of shape (K, S), is overwritten.
+    At most `most` rounds are made.
     """
     N, S = values.shape
     for _ in range(most):
@@ -25,11 +27,11 @@ def follow(steps, rewards, actions, branches, enough, most, values):
         for n in range(N):
             a = actions[n]
             for s in range(S):
-                total = rewards[a, s]
+                total = rewards[a, s]  # equation 2.19
                 for z in range(branches.shape[1]):
                     rest = branches[n, z]
                     for t in range(S):
-                        if steps[a, z, s, t] != 0.0:  # most are, in most models
+                        if steps[a, z, s, t] != 0.0:  # in most models most of them are 0
                             total += steps[a, z, s, t] * values[rest, t]
                 change = max(change, abs(total - values[n, s]))
                 values[n, s] = total
@@ -44,9 +46,11 @@ def steps_and_rewards(pomdp: POMDP) -> tuple[NDArray[np.floating], NDArray[np.fl
 
 
 def settle(pomdp: POMDP, graph: PolicyGraph, guess: NDArray[np.floating]) -> NDArray[np.floating]:
-    """Return what a graph's nodes earn, from a guess, by repeating their equations."""
+    """Return what the nodes of a graph earn, by repeating their equations from a guess."""
     values = guess.copy()
-    most = 10 + int(40 / -np.log(max(pomdp.gamma, 1e-9)))  # e^-40 is less than rounding
+    most = 10 + int(
+        40 / -np.log(max(pomdp.gamma, 1e-9))
+    )  # gamma^most is below e^-40, less than rounding
     enough = 1e-15 * float(np.abs(pomdp.R).max())
     follow(*steps_and_rewards(pomdp), graph.actions, graph.branches, enough, most, values)
     return values
@@ -73,7 +77,7 @@ class PolicyGraph:
 
     Examples
     --------
-    Look for ever at a world that pays 1 for it:
+    A world pays 1 for every look, and the robot looks for ever:
 
     >>> graph = PolicyGraph([0], [[0, 0]])
     >>> graph
@@ -100,6 +104,28 @@ class PolicyGraph:
             f"PolicyGraph({K} node{'' if K == 1 else 's'}, {Z} observation{'' if Z == 1 else 's'})"
         )
 
+    def reached(self, start: int) -> list[int]:
+        """Return the nodes that can be reached from a node: itself, then the nearest first.
+
+        Parameters
+        ----------
+        start : int
+            The node.
+
+        Returns
+        -------
+        list of int
+
+        Examples
+        --------
+        >>> PolicyGraph([0, 1, 0], [[1, 0], [1, 1], [0, 0]]).reached(0)
+        [0, 1]
+        """
+        nodes = [start]
+        for k in nodes:  # the list grows in the loop
+            nodes += [j for j in dict.fromkeys(self.branches[k].tolist()) if j not in nodes]
+        return nodes
+
     def values(self, pomdp: POMDP) -> NDArray[np.floating]:
         """Return what each node earns from each state.
 
@@ -111,14 +137,15 @@ class PolicyGraph:
         Returns
         -------
         ndarray, shape (K, S)
-            The solution of alpha_k(s) = R(s, a) + gamma sum_t T(s, a, t) sum_z O(t, a, z)
-            alpha_k'(t), where a is the action of node k and k' the node that follows z: equation
-            2.19 without an end. Of large graphs the equations are repeated until nothing changes.
+            The solution of alpha_k(s) = R(s, a) + gamma sum_s' T(s, a, s') sum_z O(s', a, z)
+            alpha_k'(s'), where a is the action of node k and k' the node that follows z. This is
+            equation 2.19 without an end. For large graphs the equations are repeated until the
+            values no longer change.
 
         Raises
         ------
         ValueError
-            If the graph has actions or observations that the model has not.
+            If the model lacks actions or observations of the graph.
         """
         integers("actions", self.actions, 0, pomdp.n_actions - 1)
         K, Z = self.branches.shape

@@ -1,4 +1,4 @@
-"""The linear program of pruning: how much does a vector add to the upper surface of others?
+"""The linear program of pruning: how much a vector adds to the upper surface of others.
 
 For a vector w and vectors u_0 ... u_{n-1} the answer is the gain
 
@@ -156,9 +156,8 @@ def ratio(corner, bland, table):
         if leaving == NONE or r < smallest - ZERO:
             leaving, smallest = i, r
         elif r <= smallest + ZERO:
-            if (bland and basis[i] < basis[leaving]) or (
-                not bland and column[i] > column[leaving]
-            ):
+            preferred = basis[i] < basis[leaving] if bland else column[i] > column[leaving]
+            if preferred:
                 leaving, smallest = i, min(r, smallest)
     return leaving
 

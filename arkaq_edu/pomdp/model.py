@@ -1,4 +1,4 @@
-"""A partially observable Markov decision process: an MDP that is seen only through hints."""
+"""A partially observable Markov decision process: an MDP whose state is hidden."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from arkaq_edu.mdp.model import MDP
 
 
 class POMDP:
-    """A POMDP <S, A, T, R, Omega, O>, with the discount rate that weighs its future.
+    """A POMDP <S, A, T, R, Omega, O> with a discount rate.
 
     Parameters
     ----------
@@ -26,16 +26,16 @@ class POMDP:
     gamma : float
         The discount rate, in [0, 1).
     start : array_like, shape (S,), optional
-        The belief at the start; without it all states are equally likely.
+        The belief at the start. By default all states are equally likely.
     states, actions, observations : sequence of str, optional
-        Their names; by default they are called "0", "1", ...
+        Their names. By default they are "0", "1", ...
 
     Attributes
     ----------
     mdp : MDP
-        The world behind the observations, for one who sees its states.
+        The same world without the observations: its state is seen.
     T, O, R, start : ndarray
-        As given; they cannot be written to.
+        As given, and read-only.
     gamma : float
     n_states, n_actions, n_observations : int
     states, actions, observations : tuple of str
@@ -43,14 +43,14 @@ class POMDP:
     Raises
     ------
     ValueError
-        If a shape does not fit, an entry is not finite, a row of `T` or `O` is no distribution,
-        `gamma` is outside [0, 1), or the names are not as many as needed, or not all different.
+        If a shape does not fit, an entry is not finite, a row of `T` or `O` is not a distribution,
+        `gamma` is outside [0, 1), the number of names is wrong, or two names are equal.
 
     Notes
     -----
-    `O` holds distributions over observations, one for each action and state it led to. The thesis
-    (2.3) calls it a set of distributions over states, and lets the history on which the action A_t
-    is chosen hold A_t itself; it ends with the observation O_t.
+    `O` holds distributions over observations, one for each action and each state that it led to.
+    The thesis (2.3) calls them distributions over states. It also lists A_t in the history on which
+    A_t is chosen; that history ends with the observation O_t.
 
     References
     ----------
@@ -59,7 +59,7 @@ class POMDP:
 
     Examples
     --------
-    The ball is left or right of the robot. Looking says where, and errs in one of ten cases.
+    The ball is left or right of the robot. A look tells the side, and errs in one of ten cases.
 
     >>> stay = [[1, 0], [0, 1]]
     >>> pomdp = POMDP(T=[stay], O=[[[0.9, 0.1], [0.1, 0.9]]], R=[[0], [0]], gamma=0.9,
@@ -110,25 +110,25 @@ class POMDP:
     def step(
         self, s: ArrayLike, a: ArrayLike, rng: np.random.Generator | int
     ) -> tuple[Any, Any, Any, Any]:
-        """Take action `a` in state `s`, for one walker or for many at once.
+        """Take action `a` in state `s`, for one agent or for many at once.
 
         Parameters
         ----------
         s, a : int or array_like of int, shape (N,)
-            The states, which no agent sees, and the actions.
+            The states, which are hidden from the agents, and the actions.
         rng : numpy.random.Generator or int
-            Where the draws come from.
+            The source of randomness.
 
         Returns
         -------
         s_next : int or ndarray, shape (N,)
-            The states that follow.
+            The next states.
         z : int or ndarray, shape (N,)
             What is observed there.
         r : float or ndarray, shape (N,)
             The rewards R(s, a).
         terminated : bool or ndarray, shape (N,)
-            Whether `s_next` is an end of the MDP: never left, and nothing to earn.
+            Whether `s_next` ends the episode: it is never left, and nothing is earned there.
 
         Raises
         ------
@@ -145,14 +145,14 @@ class POMDP:
         rng = np.random.default_rng(rng)
         s_next, r, terminated = self.mdp.step(s, a, rng)
         sums = self.O[np.asarray(a), s_next].cumsum(axis=-1)
-        # Scaled by the last sum, so that no draw below 1 falls past what can be observed.
+        # The last sum may be a little below 1 by rounding. Scaled by it, no draw falls outside.
         u = rng.random(np.shape(s_next)) * sums[..., -1]
         z = (sums <= u[..., np.newaxis]).sum(axis=-1)
         return s_next, z, r, terminated
 
 
 def _names(what: str, given: Sequence[str] | None, n: int) -> tuple[str, ...]:
-    """Return the names of n things, or refuse them."""
+    """Return n different names, by default the numbers from 0."""
     if given is None:
         return tuple(map(str, range(n)))
     names = tuple(given)

@@ -1,4 +1,4 @@
-"""Pruning: which vectors form the upper surface, and who dominates the others."""
+"""Pruning: which vectors form the upper surface, and which of them dominate the others."""
 
 from __future__ import annotations
 
@@ -14,10 +14,12 @@ from arkaq_edu.pomdp import linear_program
 Floats = NDArray[np.floating]
 Ints = NDArray[np.int64]
 
-# What a vector adds is told from rounding above this part of what the vectors differ by.
+# Gains below this share of the largest difference between the vectors may be rounding errors.
 ROUNDING = 1e-12
-# Beliefs further apart than this are not the same; leads smaller than this are none.
-APART, ZERO = 1e-9, 1e-300
+# Two intervals of beliefs are disjoint if the gap between them is wider than this.
+APART = 1e-9
+# The smallest difference that is divided by: it only avoids 0 / 0.
+TINY = 1e-300
 
 
 def prune(alphas: ArrayLike, tol: float = 1e-9) -> NDArray[np.intp]:
@@ -28,12 +30,12 @@ def prune(alphas: ArrayLike, tol: float = 1e-9) -> NDArray[np.intp]:
     alphas : array_like, shape (K, S)
         The vectors.
     tol : float, default 1e-9
-        What is left out may add no more than this anywhere, in the units of `alphas`.
+        No vector that is left out adds more than this at any belief, in the units of `alphas`.
 
     Returns
     -------
     ndarray of int
-        The rows that are needed, ascending. Of equal rows the first is kept.
+        The rows that are needed, in ascending order. Of equal rows the first is kept.
 
     Raises
     ------
@@ -42,18 +44,18 @@ def prune(alphas: ArrayLike, tol: float = 1e-9) -> NDArray[np.intp]:
 
     See Also
     --------
-    dominated : who makes the others superfluous.
+    dominated : which vectors make the others superfluous.
 
     Notes
     -----
-    To compare two vectors at a time is not enough: a vector can lie below the upper surface of
-    two others though neither of the two is above it everywhere. Whether a vector adds to the rest
-    at some belief is a linear program (C. White, "A survey of solution techniques for the
-    partially observed Markov decision process", Annals of Operations Research 32, 1991).
+    Comparing two vectors at a time is not enough. A vector can lie below the upper surface of two
+    others even if neither of the two is above it everywhere. A linear program tells whether a
+    vector adds to the others at some belief.
 
     References
     ----------
-    Thesis 2.3.6.
+    Thesis 2.3.6. C. White, "A survey of solution techniques for the partially observed Markov
+    decision process", Annals of Operations Research 32, 1991.
 
     Examples
     --------
@@ -79,7 +81,7 @@ def needed_sums(
     A, B : ndarray, shape (N, S) and (M, S)
         The vectors.
     tol : float
-        What is left out may add no more than this anywhere.
+        No sum that is left out adds more than this at any belief.
     seeds : ndarray, shape (P, S), optional
         Beliefs where needed sums are likely to be found.
 
@@ -89,10 +91,10 @@ def needed_sums(
     beliefs : ndarray, shape (K, S)
         A belief at which each is needed.
     lost : float
-        What is left out adds no more than this: `tol`, or what rounding does not let be told.
+        No sum that is left out adds more than this: `tol`, or the rounding error if that is larger.
     """
     S = A.shape[1]
-    # In a state where all vectors agree nothing is decided, and only differences matter.
+    # Only differences matter, and only in states where the vectors differ at all.
     A, B = A - A[0], B - B[0]
     decides = np.flatnonzero((A != 0).any(axis=0) | (B != 0).any(axis=0))
     if not len(decides):
@@ -123,7 +125,7 @@ def needed_sums(
 
 
 def _apart(A: Floats, B: Floats) -> NDArray[np.bool_]:
-    """Tell for which pairs (i, j) there is no belief where both A[i] and B[j] can be best."""
+    """Return, for each pair (i, j), whether A[i] and B[j] are certainly not best at one belief."""
     apart = np.zeros((len(A), len(B)), np.bool_)
     if 1 in (len(A), len(B), A.shape[1]):
         return apart
@@ -137,16 +139,17 @@ def _apart(A: Floats, B: Floats) -> NDArray[np.bool_]:
 def _box(A: Floats) -> tuple[Floats, Floats]:
     """Return bounds low <= b <= high on the beliefs where each vector is the best of all.
 
-    Against one other vector they are exact, so on two states they are the ends of an interval.
+    Each bound compares two vectors at a time. With two states the bounds are exact: they are the
+    ends of an interval.
     """
     low, high = np.zeros(A.shape), np.ones(A.shape)
     for i, a in enumerate(A):
         lead = np.delete(a - A, i, axis=0)
         order = np.sort(lead, axis=1)
-        # Where a is behind another, the most that it is ahead elsewhere must make up for it.
-        behind, most = np.minimum(lead, -ZERO), np.maximum(order[:, -1:], 0)
+        # In a state where `a` is behind, its largest lead elsewhere has to make up for it.
+        behind, most = np.minimum(lead, -TINY), np.maximum(order[:, -1:], 0)
         high[i] = np.where(lead < 0, most / (most - behind), 1).min(axis=0)
-        # Where a is ahead in one state only, that state must make up for the least it is behind.
+        # If `a` is ahead in one state only, that state makes up for the smallest lag elsewhere.
         only = order[:, -2] < 0
         state, next_best = lead[only].argmax(axis=1), order[only, -2]
         np.maximum.at(low[i], state, -next_best / (np.maximum(order[only, -1], 0) - next_best))
@@ -156,9 +159,8 @@ def _box(A: Floats) -> tuple[Floats, Floats]:
 def distance(A: Floats, C: Floats) -> tuple[float, Floats]:
     """Return a bound on |max_i b . A[i] - max_j b . C[j]| over all beliefs b, and where it is met.
 
-    The difference of two upper surfaces is largest where, over i, max_b min_j b . (A[i] - C[j]) is:
-    a linear program for each i; and the same the other way round. The bound is that of their
-    duals, so that no belief is overlooked.
+    The upper surface of A is above that of C by at most the gain of A over C, and the other way
+    round.
     """
     over, belief, _ = gain(A, C, low=0.0)
     under, other, _ = gain(C, A, low=over)
@@ -166,22 +168,22 @@ def distance(A: Floats, C: Floats) -> tuple[float, Floats]:
 
 
 def gain(A: Floats, C: Floats, low: float = -np.inf) -> tuple[float, Floats, Floats]:
-    """Return what some vectors add to others where they add most: max_i max_b min_k b.(a_i - c_k).
+    """Return the most that some vectors add to others: max_i max_b min_k b . (a_i - c_k).
 
     Parameters
     ----------
     A, C : ndarray, shape (N, S) and (K, S)
         The vectors, and the others.
     low : float
-        No gain below this is looked for.
+        Gains below this are of no interest.
 
     Returns
     -------
     gain : float
-        An upper bound, proved by the mixture, and the gain itself up to rounding; `low` where the
-        gain is no larger. Negative where the A lie below the upper surface of C everywhere.
+        An upper bound that the mixture proves, equal to the gain up to rounding; `low` if the gain
+        is not larger. It is negative if all of A lie below the upper surface of C everywhere.
     belief : ndarray, shape (S,)
-        Where that is.
+        Where the gain is greatest.
     mixture : ndarray, shape (K,)
         Weights that sum to 1: ``A[i] - mixture @ C`` is at most the gain in every state.
     """
@@ -197,20 +199,20 @@ def gain(A: Floats, C: Floats, low: float = -np.inf) -> tuple[float, Floats, Flo
 
 @dataclass(frozen=True)
 class Domination:
-    """One vector that is needed nowhere, and those that together make it so.
+    """A vector that is needed nowhere, and the vectors that dominate it.
 
     Attributes
     ----------
     index : int
         The dominated vector.
     by : tuple of int
-        The vectors that dominate it: one alone where one is enough, else several jointly.
+        The vectors that dominate it: a single one if that is enough, else several jointly.
     weights : ndarray, shape (len(by),)
-        The proof: mixed by these weights, which sum to 1, they earn at least as much in every
-        state. So at every belief one of them does.
+        The proof. The weights sum to 1, and with them the mixture of `by` earns at least as much
+        in every state. So at every belief one of `by` does.
     lead : ndarray, shape (len(by), S)
-        Where: each one's lead over the dominated vector in every state. At a belief b it is ahead
-        by ``lead @ b``.
+        By how much each of `by` is ahead of the dominated vector in each state. At a belief b the
+        leads are ``lead @ b``.
     """
 
     index: int
@@ -233,14 +235,14 @@ class Domination:
         Raises
         ------
         ValueError
-            If `b` is no distribution over the states.
+            If `b` is not a distribution over the states.
         """
         b = distribution("b", array("b", b, (self.lead.shape[1],)))
         return self.by[int((self.lead @ b).argmax())]
 
 
 def dominated(alphas: ArrayLike, tol: float = 1e-9) -> list[Domination]:
-    """Name every vector that is needed nowhere, and who dominates it and where.
+    """Return every vector that is needed nowhere, with the vectors that dominate it.
 
     Parameters
     ----------
@@ -252,7 +254,7 @@ def dominated(alphas: ArrayLike, tol: float = 1e-9) -> list[Domination]:
     Returns
     -------
     list of Domination
-        One for each row that `prune` leaves out, ascending.
+        One for each row that `prune` leaves out, in ascending order.
 
     Raises
     ------
@@ -261,10 +263,10 @@ def dominated(alphas: ArrayLike, tol: float = 1e-9) -> list[Domination]:
 
     Notes
     -----
-    In figure 2.17 p_d is dominated by p_c alone. Of p_c the thesis says that it is "similarly"
-    dominated by p_a and p_b; but neither of the two is above it everywhere: only jointly do they
-    dominate it, p_a on one side and p_b on the other. Comparing pairs never finds that. The
-    linear program does, and its dual is the proof: a mixture of p_a and p_b above p_c everywhere.
+    In figure 2.17 p_c alone dominates p_d. The thesis says that p_a and p_b dominate p_c
+    "similarly", but neither of them is above p_c everywhere. They dominate it only jointly, p_a on
+    one side and p_b on the other. A comparison of pairs never finds this. The linear program does,
+    and its dual is the proof: a mixture of p_a and p_b that is above p_c everywhere.
 
     References
     ----------
@@ -287,7 +289,7 @@ def dominated(alphas: ArrayLike, tol: float = 1e-9) -> list[Domination]:
         ahead = A - A[k]
         ahead[k] = -np.inf
         alone = np.flatnonzero(ahead.min(axis=1) >= -tol)
-        if len(alone):  # the nearest of those above it everywhere
+        if len(alone):  # take the lowest of those that are above it everywhere
             by = alone[[ahead[alone].sum(axis=1).argmin()]]
             weights: Floats = np.ones(1)
         else:

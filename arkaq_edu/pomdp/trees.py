@@ -1,4 +1,4 @@
-"""Policy trees: what to do now, and what to do then, whatever is observed."""
+"""Policy trees: an action now, and for each observation another tree (equations 2.18 to 2.22)."""
 
 from __future__ import annotations
 
@@ -15,19 +15,20 @@ from arkaq_edu.pomdp.model import POMDP
 
 @dataclass(frozen=True)
 class PolicyTree:
-    """A plan for a number of steps: an action, and for each observation a plan for the rest.
+    """A plan for some steps: an action, and for each observation a plan for the remaining steps.
 
     Parameters
     ----------
     action : int
         The action at the root.
     branches : tuple of PolicyTree, default ()
-        What follows each observation, all of the same depth; empty where this is the last step.
+        The plan that follows each observation, all of the same depth; empty if this is the last
+        step.
 
     Raises
     ------
     ValueError
-        If `action` is not an integer >= 0, or the branches are not trees of one depth.
+        If `action` is not an integer >= 0, or the branches are not trees of the same depth.
 
     References
     ----------
@@ -35,7 +36,7 @@ class PolicyTree:
 
     Examples
     --------
-    Listen twice for a tiger, then open a door if it was heard behind the other one both times.
+    Listen twice for a tiger. If it was heard behind the same door both times, open the other one.
 
     >>> listen, left, right = map(PolicyTree, range(3))
     >>> plan = PolicyTree(0, (PolicyTree(0, (right, listen)), PolicyTree(0, (listen, left))))
@@ -61,7 +62,7 @@ class PolicyTree:
 
     @property
     def depth(self) -> int:
-        """The number of steps that the plan is for."""
+        """The number of steps in the plan."""
         tree, depth = self, 1
         while tree.branches:
             tree, depth = tree.branches[0], depth + 1
@@ -73,7 +74,7 @@ class PolicyTree:
         Parameters
         ----------
         pomdp : POMDP, optional
-            Where the names come from; without it the numbers stand.
+            The model whose names to use. By default actions and observations are numbers.
 
         Returns
         -------
@@ -103,7 +104,7 @@ class PolicyTree:
 
 
 def tree_value(pomdp: POMDP, tree: PolicyTree) -> NDArray[np.float64]:
-    """Return the vector alpha_p of a policy tree p: what it earns from each state.
+    """Return the vector alpha_p of a policy tree p: what it earns from each state (equation 2.21).
 
     Parameters
     ----------
@@ -115,9 +116,9 @@ def tree_value(pomdp: POMDP, tree: PolicyTree) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (S,)
-        alpha(s) = R(s, a) + gamma sum_t T(s, a, t) sum_z O(t, a, z) alpha_z(t), where a is the
-        action at the root and alpha_z the vector of the tree that follows observation z. Without
-        branches only the reward is left.
+        V_p(s) = R(s, a) + gamma sum_s' T(s, a, s') sum_o O(s', a, o) V_{o(p)}(s'), where a is the
+        action at the root and o(p) the tree that follows observation o. Without branches it is
+        only the reward.
 
     Raises
     ------
@@ -128,7 +129,8 @@ def tree_value(pomdp: POMDP, tree: PolicyTree) -> NDArray[np.float64]:
     Notes
     -----
     From a belief b the tree earns b . alpha_p, equations 2.20 and 2.22. The thesis writes V_p(s)
-    there; it is V_p(b), a function of the belief. The same in 2.23: V_t(b), the best tree for b.
+    there, but this is a function of the belief, V_p(b). Likewise 2.23 is V_t(b), the value of the
+    best tree for b.
 
     References
     ----------
@@ -136,7 +138,7 @@ def tree_value(pomdp: POMDP, tree: PolicyTree) -> NDArray[np.float64]:
 
     Examples
     --------
-    The ball is left or right and stays there; a look errs in one of ten cases; a kick to the right
+    The ball is left or right and stays there. A look errs in one of ten cases. A kick to the right
     side earns 1.
 
     >>> pomdp = POMDP(T=[np.eye(2)] * 3, O=[[[0.9, 0.1], [0.1, 0.9]]] * 3,
@@ -146,22 +148,21 @@ def tree_value(pomdp: POMDP, tree: PolicyTree) -> NDArray[np.float64]:
     >>> tree_value(pomdp, PolicyTree(0, (PolicyTree(1), PolicyTree(2))))
     array([0.45, 0.45])
     """
-    integer("action", tree.action, 0, pomdp.n_actions - 1)
-    alpha = pomdp.R[:, tree.action].copy()
+    R, T, O, gamma = pomdp.R, pomdp.T, pomdp.O, pomdp.gamma  # noqa: E741
+    a = integer("action", tree.action, 0, pomdp.n_actions - 1)
     if not tree.branches:
-        return alpha
+        return R[:, a].copy()  # equation 2.18
     if len(tree.branches) != pomdp.n_observations:
         raise ValueError(
             f"branches must be one for each of the {pomdp.n_observations} observations, "
             f"got {len(tree.branches)}"
         )
-    rest = np.array([tree_value(pomdp, branch) for branch in tree.branches])
-    later = (pomdp.O[tree.action] * rest.T).sum(axis=1)
-    return alpha + pomdp.gamma * pomdp.T[tree.action] @ later
+    V = np.column_stack([tree_value(pomdp, branch) for branch in tree.branches])  # V[s', o]
+    return R[:, a] + gamma * T[a] @ (O[a] * V).sum(axis=1)  # equation 2.19
 
 
 def all_trees(pomdp: POMDP, depth: int) -> Iterator[PolicyTree]:
-    """Yield every policy tree of a depth: the search without any pruning.
+    """Yield every policy tree of a depth.
 
     Parameters
     ----------
@@ -173,8 +174,8 @@ def all_trees(pomdp: POMDP, depth: int) -> Iterator[PolicyTree]:
     Yields
     ------
     PolicyTree
-        There are A to the power (Z^depth - 1) / (Z - 1) of them: for two actions and two
-        observations 2, 8, 128, 32768, and then two thousand million.
+        There are A to the power (Z^depth - 1) / (Z - 1) of them. For two actions and two
+        observations that is 2, 8, 128, 32768, and then two billion.
 
     Raises
     ------

@@ -15,7 +15,7 @@ from arkaq_edu.pomdp.trees import PolicyTree
 
 @dataclass(frozen=True, eq=False)
 class ValueFunction:
-    """V(b) = max_k b . alpha_k: what the best of K plans earns from a belief.
+    """V(b) = max_k b . alpha_k: what the best of K plans earns from a belief (equation 2.23).
 
     Attributes
     ----------
@@ -24,26 +24,26 @@ class ValueFunction:
     actions : ndarray of int, shape (K,)
         The first action of each plan.
     branches : ndarray of int, shape (K, Z)
-        Where each plan goes on after each observation: a row of `shorter`, or, without a
-        `shorter`, a row of this same value function (a policy graph). Shape (K, 0) for plans of
-        one step, and where no policy graph is known.
+        The plan that follows each observation: a row of `shorter`, or, if that is None, a row of
+        this same value function (a policy graph). Shape (K, 0) for plans of one step, and if no
+        policy graph is known.
     shorter : ValueFunction or None
-        The value function with one step less to go.
+        The value function with one step fewer to go.
     error : float
-        A certified bound: nowhere on the simplex is V further from the optimal value than this.
+        A certified bound on the distance from the optimal value, over all beliefs.
     horizon : int or None
-        The number of steps still to go; None where the future has no end.
+        The number of steps to go; None if the future has no end.
 
     Raises
     ------
     ValueError
-        If there is no plan, or `alphas`, `actions` and `branches` are not of as many.
+        If there is no plan, or `alphas`, `actions` and `branches` differ in length.
 
     Notes
     -----
-    V is piecewise linear and convex in the belief. The thesis (2.3.4) says so of the optimal
-    policy; it is the value function that has this shape, and a policy is a choice among the
-    pieces. Equations 2.20, 2.22 and 2.23 write V(s) for it: its argument is the belief, V(b).
+    V is piecewise linear and convex in the belief. The thesis (2.3.4) says this of the optimal
+    policy, but it is the value function that has this shape; a policy chooses among the pieces.
+    Equations 2.20, 2.22 and 2.23 write V(s); the argument is the belief, V(b).
 
     References
     ----------
@@ -87,7 +87,7 @@ class ValueFunction:
         return f"ValueFunction({n} vector{'' if n == 1 else 's'} over {n_states} states)"
 
     def best(self, b: ArrayLike) -> Any:
-        """Return which plan is best from a belief; of equals the first.
+        """Return which plan is best from a belief; of equally good plans the first.
 
         Parameters
         ----------
@@ -101,7 +101,7 @@ class ValueFunction:
         Raises
         ------
         ValueError
-            If `b` is no distribution over the states.
+            If `b` is not a distribution over the states.
         """
         k = (self._beliefs(b) @ self.alphas.T).argmax(axis=-1)
         return k if k.ndim else int(k)
@@ -121,7 +121,7 @@ class ValueFunction:
         Raises
         ------
         ValueError
-            If `b` is no distribution over the states.
+            If `b` is not a distribution over the states.
         """
         values = (self._beliefs(b) @ self.alphas.T).max(axis=-1)
         return values if values.ndim else float(values)
@@ -141,20 +141,20 @@ class ValueFunction:
         Raises
         ------
         ValueError
-            If `b` is no distribution over the states.
+            If `b` is not a distribution over the states.
         """
         a = self.actions[self.best(b)]
         return a if np.ndim(a) else int(a)
 
     @property
     def graph(self) -> PolicyGraph | None:
-        """The policy graph, where the plans are known to go on among themselves; else None."""
+        """The policy graph, or None if no graph is known."""
         if self.shorter is not None or not self.branches.shape[1]:
             return None
         return PolicyGraph(self.actions, self.branches)
 
     def tree(self, k: int) -> PolicyTree:
-        """Return plan k of a finite horizon, written out.
+        """Return plan k of a finite horizon as a tree.
 
         Parameters
         ----------
@@ -168,15 +168,15 @@ class ValueFunction:
         Raises
         ------
         ValueError
-            If there is no such plan, or it has no end.
+            If there is no such plan, or the horizon is not finite.
         """
         k = integer("k", k, 0, len(self) - 1)
         if self.horizon is None:
-            raise ValueError("k must be a plan with an end, but these go on for ever")
+            raise ValueError("k must be a plan with an end, but these plans go on for ever")
         stages = [self]
         while stages[-1].shorter is not None:
             stages.append(stages[-1].shorter)
-        # From the last step to the first. Plans share what follows, and so may the trees.
+        # From the last step to the first. Plans share their branches, so trees share theirs.
         trees = [PolicyTree(int(a)) for a in stages.pop().actions]
         for V in reversed(stages):
             trees = [
