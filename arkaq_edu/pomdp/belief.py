@@ -200,7 +200,8 @@ def successors(pomdp: POMDP, b: ArrayLike, a: int) -> Successors:
     (array([0.5, 0.5]), array([[0.9, 0.1],
            [0.1, 0.9]]))
     """
-    joint = pomdp.O[a].T * predict(pomdp, b, a)  # equation 2.15 for every z, shape (Z, S)
+    predicted, O = predict(pomdp, b, a), pomdp.O  # noqa: E741
+    joint = O[a].T * predicted  # the numerator of equation 2.15 for every z, shape (Z, S)
     chances = joint.sum(axis=1)
     beliefs = np.full(joint.shape, np.nan)
     np.divide(joint, chances[:, np.newaxis], out=beliefs, where=chances[:, np.newaxis] > 0)

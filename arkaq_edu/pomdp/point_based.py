@@ -77,9 +77,7 @@ class UpperBound:
         n_states = len(self.corners)
         many = np.ndim(b) == 2
         beliefs = distribution("b", array("b", b, (None, n_states) if many else (n_states,)))
-        rows = np.array(
-            beliefs, ndmin=2
-        )  # a copy, because kernels are compiled for writable arrays
+        rows = np.array(beliefs, ndmin=2)  # a copy: kernels are compiled for writable arrays
         below = self.values - self.points @ self.corners
         bounds = np.empty(len(rows))
         _upper(rows, self.corners, self.points, below, self.vectors, bounds)
@@ -226,30 +224,31 @@ class _Search:
 
     def __init__(self, pomdp: POMDP) -> None:
         self.pomdp = pomdp
+        self.seen = np.ascontiguousarray(pomdp.O.transpose(0, 2, 1))  # (A, Z, S): O(s', a, z)
         self.lower, self.upper = _Lower(pomdp), _Upper(pomdp)
 
     def gap(self, b: Floats) -> float:
-        return float(self.upper.at(b[np.newaxis])[0]) - self.lower.value(b)
+        return float(self.upper.at(np.array([b]))[0]) - self.lower.value(b)
 
     def look(self, b: Floats) -> _Ahead:
-        T, O = self.pomdp.T, self.pomdp.O  # noqa: E741
-        joint = (b @ T)[:, np.newaxis] * O.transpose(0, 2, 1)  # equation 2.15, not yet divided
+        joint = (b @ self.pomdp.T)[:, np.newaxis] * self.seen  # equation 2.15, not yet divided
         beliefs = joint.reshape(-1, len(b))
         lower, branches = self.lower.at(beliefs)
         upper = self.upper.at(beliefs)
-        return _Ahead(joint, *(x.reshape(joint.shape[:2]) for x in (lower, branches, upper)))
+        AZ = joint.shape[:2]
+        return _Ahead(joint, lower.reshape(AZ), branches.reshape(AZ), upper.reshape(AZ))
 
     def improve(self, b: Floats) -> None:
         """Back up both bounds at a belief; a bound that would not improve is left as it is."""
-        R, T, O, gamma = self.pomdp.R, self.pomdp.T, self.pomdp.O, self.pomdp.gamma  # noqa: E741
+        R, T, gamma = self.pomdp.R, self.pomdp.T, self.pomdp.gamma
         ahead = self.look(b)
         high = (b @ R + gamma * ahead.upper.sum(axis=1)).max()
-        if high < self.upper.at(b[np.newaxis])[0] - TINY * abs(high):
+        if high < self.upper.at(np.array([b]))[0] - TINY * abs(high):
             self.upper.add(b, high)
         earned = b @ R + gamma * ahead.lower.sum(axis=1)
         a = int(earned.argmax())
         if earned[a] > self.lower.value(b) + TINY * abs(earned[a]):
-            later = (O[a].T * self.lower.alphas[ahead.branches[a]]).sum(axis=0)
+            later = (self.seen[a] * self.lower.alphas[ahead.branches[a]]).sum(axis=0)
             self.lower.add(R[:, a] + gamma * T[a] @ later, a, ahead.branches[a])  # equation 2.19
 
     def trial(self, most: int) -> int:
@@ -330,8 +329,7 @@ class _Upper:
 
     def at(self, beliefs: Floats) -> Floats:
         bounds = np.empty(len(beliefs))
-        rows = np.array(beliefs)  # a copy, because kernels are compiled for writable arrays
-        _upper(rows, self.corners, self.points, self.below, self.vectors, bounds)
+        _upper(beliefs, self.corners, self.points, self.below, self.vectors, bounds)
         return bounds
 
     def add(self, b: Floats, value: float) -> None:
@@ -395,7 +393,7 @@ def fast_informed_bound(pomdp: POMDP) -> Floats:
 
 @kernel
 def _lower(beliefs, alphas, bounds, best):
-    """Set bounds[i] = max_k b . alphas[k] for each row b of `beliefs`, and best[i] to the first k."""
+    """Set bounds[i] = max_k b . alphas[k] for row b = beliefs[i], and best[i] to the first k."""
     support = np.empty(beliefs.shape[1], dtype=np.int64)
     for i in range(len(beliefs)):
         n = 0

@@ -1,9 +1,17 @@
-"""Claims of beliefs, counted: by hand, and over worlds that are as the belief thinks, or not."""
+"""Beliefs along a history, and how well their claims are kept."""
 
 import numpy as np
 import pytest
 
-from arkaq_edu.pomdp import belief_update, calibration, problem
+from arkaq_edu.pomdp import (
+    belief_update,
+    calibration,
+    entropy,
+    predict,
+    problem,
+    successors,
+    trajectory,
+)
 
 
 def test_claims_are_sorted_and_counted():
@@ -44,3 +52,33 @@ def test_a_belief_with_the_right_model_keeps_its_word():
 def test_what_are_no_claims_is_refused(claims, true, message):
     with pytest.raises(ValueError, match=message):
         calibration(claims, true, edges=[0.5])
+
+
+def test_a_trajectory_predicts_and_corrects():
+    pomdp = problem("three_places")
+    beliefs, steps, pending = trajectory(pomdp, ["look", "seen-left", "look"])
+    corrected = belief_update(pomdp, pomdp.start, 0, 0)
+    by_hand = [pomdp.start, predict(pomdp, pomdp.start, 0), corrected, predict(pomdp, corrected, 0)]
+    assert np.array(beliefs) == pytest.approx(np.array(by_hand))
+    assert (steps, pending) == ([(0, 0)], 0)
+
+
+def test_observations_are_drawn_by_the_seed_and_with_the_chances_of_the_belief():
+    pomdp = problem("ball_side")
+    history = ["look", None] * 3
+    assert trajectory(pomdp, history, 3).steps == trajectory(pomdp, history, 3).steps
+    drawn = [trajectory(pomdp, history, seed).steps for seed in range(1500)]
+    assert len(set(map(tuple, drawn))) > 20
+    shares = np.bincount([steps[0][1] for steps in drawn], minlength=3) / len(drawn)
+    assert shares == pytest.approx(successors(pomdp, pomdp.start, 0).chances, abs=0.04)
+    after_left = [steps[1][1] for steps in drawn if steps[0][1] == 0]
+    after = belief_update(pomdp, pomdp.start, 0, 0)
+    shares = np.bincount(after_left, minlength=3) / len(after_left)
+    assert shares == pytest.approx(successors(pomdp, after, 0).chances, abs=0.06)
+
+
+@pytest.mark.parametrize(
+    ("b", "bits"), [([1, 0, 0], 0), ([0.5, 0.5, 0], 1), ([0.25] * 4, 2), ([0.9, 0.1], 0.468996)]
+)
+def test_the_entropy_is_shannons(b, bits):
+    assert entropy(b) == pytest.approx(bits, abs=1e-6)

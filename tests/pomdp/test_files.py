@@ -211,7 +211,7 @@ def test_every_form_of_entry(tmp_path_factory, written):
         (MODEL.replace("a b", "0"), 3, 9, "a count of states from 1 to 65536, got '0'"),
         (MODEL.replace("a b", "uniform"), 3, 9, "or their names, none of them a word of the"),
         (MODEL.replace("a b", "9" * 5000), 3, 9, "a count of states from 1 to 65536, got '99"),
-        (MODEL.replace("a b", "5000"), 6, 1, "a table T of at most 16777216 entries, not 2 x 5000 x 5000"),
+        (MODEL.replace("a b", "5000"), 6, 1, "of at most 16777216 entries, not 2 x 5000 x 5000"),
         (MODEL.replace("observations: x y z\n", ""), 6, 1, "without 'observations:', got 'O'"),
         (PREAMBLE + "start: 0.5 0.6\n" + "T: * identity", 6, 8, "those of 'start' sum to 1.1"),
         (PREAMBLE + "start: 0.5\n" + "T: * identity", 7, 1, "(1 of 2 are given), got 'T'"),
