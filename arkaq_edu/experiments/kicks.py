@@ -1,13 +1,16 @@
-"""Kicks: those of a real robot, and simulated ones to set beside them."""
+"""Kicks: those of a real robot, and simulated ones to compare with them."""
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from arkaq_edu import _checks
 from arkaq_edu._paths import data_file
-from arkaq_edu.field import GoalSupervisor, Kick, World
+from arkaq_edu.field import GoalSupervisor, Kick, World, bird_view
 from arkaq_edu.field.kick import MARK
 from arkaq_edu.field.supervisor import ROBOT_START
 
@@ -18,8 +21,8 @@ def load_kicks() -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        A row a kick: x and y (mm), where the ball came to rest, ahead and aside of where it lay;
-        y_at_2m (mm), how far aside it was when it passed 2 m, NaN where it stopped short.
+        One row per kick. x and y (mm): where the ball came to rest, ahead and to the left of where
+        it lay. y_at_2m (mm): how far to the left it passed 2 m, NaN if it stopped before.
 
     References
     ----------
@@ -44,14 +47,14 @@ def record_kicks(n: int = 50, seed: int = 0, kick: Kick | None = None) -> pd.Dat
     n : int
         Number of kicks.
     seed : int
-        The seed of everything drawn.
+        Seed of all randomness.
     kick : Kick, optional
         The imperfections of the kick.
 
     Returns
     -------
     DataFrame
-        As of `load_kicks`.
+        As `load_kicks` returns it.
 
     References
     ----------
@@ -74,3 +77,92 @@ def record_kicks(n: int = 50, seed: int = 0, kick: Kick | None = None) -> pd.Dat
         passed = np.interp(2000.0, ahead, aside) if ahead[-1] > 2000.0 else np.nan
         rows.append((ahead[-1], aside[-1], passed))
     return pd.DataFrame(rows, columns=["x", "y", "y_at_2m"])
+
+
+def ready_to_kick(seed: int, distance: float = 1400.0) -> World:
+    """Return a field on which the robot faces the goal with the ball before its paw (figure 5.31).
+
+    Parameters
+    ----------
+    seed : int
+        Seed of all randomness.
+    distance : float
+        Distance of the goal (mm).
+
+    Examples
+    --------
+    >>> distance, orientation = ready_to_kick(seed=0).ball_from_robot()
+    >>> round(distance)
+    246
+    """
+    world, supervisor = World(rng=seed), GoalSupervisor(distance)
+    supervisor.place(world, 0.0)
+    supervisor.set_ball(world)
+    return world
+
+
+def photograph_kick(
+    after: float, region: tuple[float, float, float, float], seed: int = 0
+) -> tuple[NDArray[np.uint8], float]:
+    """Kick, and return a picture from above taken during the kick (figure 5.32).
+
+    Parameters
+    ----------
+    after : float
+        Time since the swing began (s), in [0, 3]; the ball rolls longer.
+    region : tuple of float
+        See `arkaq_edu.field.bird_view`.
+    seed : int
+        Seed of all randomness.
+
+    Returns
+    -------
+    picture : ndarray of uint8, shape (rows, columns, 3)
+    rolled : float
+        How far the ball has rolled (mm).
+
+    Examples
+    --------
+    >>> picture, rolled = photograph_kick(0.05, (1000.0, 3000.0, -700.0, 700.0))
+    >>> rolled  # the paw has not reached the ball
+    0.0
+    """
+    _checks.number("after", after, 0, 3)
+    world = ready_to_kick(seed)
+    begin, path = world.time, [world.ball]
+    photos: list[tuple[NDArray[np.uint8], float]] = []
+
+    def watch() -> None:
+        path.append(world.ball)
+        if world.time - begin >= after and not photos:
+            picture = bird_view(world, sight=False, ball_trail=path, region=region)
+            photos.append((picture, math.dist(path[0], path[-1])))
+
+    world.watch = watch
+    world.swing_paw()
+    return photos[0]
+
+
+def first_miss(distance: float = 1400.0) -> tuple[World, list[tuple[float, float]]]:
+    """Kick at the goal with one seed after the other, until a kick misses (figure 5.33).
+
+    Returns
+    -------
+    world : World
+        The field after the miss.
+    path : list of (x, y)
+        The path of the ball (mm).
+
+    Examples
+    --------
+    >>> world, path = first_miss()
+    >>> GoalSupervisor(1400.0).judge(world).is_success
+    False
+    """
+    seed, supervisor = 0, GoalSupervisor(distance)
+    while True:
+        world = ready_to_kick(seed, distance)
+        path = world.swing_paw()
+        if not supervisor.judge(world).is_success:
+            return world, path
+        seed += 1

@@ -457,7 +457,7 @@ class Camera:
         """
         return pitch.PALETTE[self.colors(world)]
 
-    def distance_error(self, distance: float, pixels: float = 0.05) -> float:
+    def distance_error(self, distance: Any, pixels: float = 0.05) -> Any:
         """Return the error of the distance (mm) that an error in the blob's radius causes.
 
         A ball at distance d has an image of radius f R / d pixels. If the radius is off by s
@@ -476,6 +476,19 @@ class Camera:
         209
         """
         return pixels * distance**2 / (FOCAL_LENGTH * pitch.BALL_RADIUS)
+
+
+def fit_power(distance: NDArray[np.float64], error: NDArray[np.float64]) -> tuple[float, float]:
+    """Return the exponent and factor of the power of the distance that fits the errors best.
+
+    Examples
+    --------
+    >>> exponent, factor = fit_power(np.array([1000.0, 2000.0]), np.array([10.0, 40.0]))
+    >>> round(exponent, 6), round(factor * 3000**exponent, 3)
+    (2.0, 90.0)
+    """
+    exponent, logarithm = np.polyfit(np.log(distance), np.log(error), 1)
+    return float(exponent), float(np.exp(logarithm))
 
 
 def _checked(colors: np.ndarray) -> np.ndarray:

@@ -67,6 +67,31 @@ class _Canvas:
         return np.asarray(self.image.resize(self.size, Image.Resampling.LANCZOS))
 
 
+def body_outline(x: float, y: float, heading: float) -> np.ndarray:
+    """Return the corners of the robot's body from above, its nose last.
+
+    Parameters
+    ----------
+    x, y, heading : float
+        Its pose (mm, mm, rad).
+
+    Returns
+    -------
+    ndarray, shape (5, 2)
+        Corners (mm) of a rectangle of 317 x 180 mm whose front is pointed.
+
+    Examples
+    --------
+    >>> body_outline(0.0, 0.0, 0.0)[-1]
+    array([158.5,   0. ])
+    """
+    length, width = pitch.ROBOT_LENGTH / 2, pitch.ROBOT_WIDTH / 2
+    neck = length - width / 2
+    corners = [[neck, width], [-length, width], [-length, -width], [neck, -width], [length, 0.0]]
+    c, s = math.cos(heading), math.sin(heading)
+    return np.array(corners) @ np.array([[c, s], [-s, c]]) + [x, y]
+
+
 def bird_view(
     world: World,
     width: int = 900,

@@ -9,7 +9,7 @@ __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
     submodules=[
         "arkaq", "art", "automata", "belief", "distance", "drawing", "field",
-        "gallery", "goal", "kalman", "learning", "mdp", "policy", "pomdp", "scenes",
+        "gallery", "goal", "kalman", "learning", "mdp", "policy", "pomdp",
         "segmentation", "trajectories",
     ],
     submod_attrs={

@@ -1,8 +1,8 @@
-"""Figures 5.3, 5.5, 5.7 and 5.8: the field, what the robot sees of it, and how it walks on it.
+"""Figures 5.1 to 5.5, 5.7, 5.8 and 5.31 to 5.33: the field, the robot's eye, its walk, its kick.
 
 References
 ----------
-Thesis, sections 5.1 and 5.2.1.
+Thesis, sections 5.1, 5.2.1 and 5.3.
 
 Examples
 --------
@@ -16,104 +16,53 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
+import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu import _checks
-from arkaq_edu.field import Camera, Legs, World, bird_view, pitch, random_place
-from arkaq_edu.field.camera import FIELD_OF_VIEW
-from arkaq_edu.field.supervisor import MAX_BALL_DISTANCE, ROBOT_START, Placement
-from arkaq_edu.field.view import EXTENT
+from arkaq_edu.experiments.kicks import first_miss, photograph_kick, ready_to_kick
+from arkaq_edu.field import Camera, Legs, World, bird_view, motion, pitch, random_place
+from arkaq_edu.field.camera import FIELD_OF_VIEW, fit_power
+from arkaq_edu.field.supervisor import MAX_BALL_DISTANCE, ROBOT_START
+from arkaq_edu.field.view import EXTENT, body_outline
+from arkaq_edu.field.world import LONGEST_FOOTSTEP
 from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.drawing.diagram import Place, blank, box, frame, wire, words
+from arkaq_edu.figures.drawing.plot import Plot
 
+#: The modules of figure 5.4: their places, and whether the thesis's experiments use them.
+MODULES: dict[str, tuple[Place, bool]] = {
+    "vision": ((1.0, 2.6), True),
+    "localization": ((3.4, 2.6), False),
+    "planner": ((5.8, 2.6), False),
+    "motion": ((8.2, 2.6), True),
+    "communication": ((4.6, 3.9), False),
+    "ARKAQ": ((4.6, 1.1), True),
+}
+#: The settings of figure 5.2: left and right footstep (mm), head (rad).
+SETTINGS = (90.0, 110.0, -0.3)
 
-class Picture(NamedTuple):
-    """What `figure_5_3` and `plot_field` drew: a picture, with axes that measure it."""
-
-    ax: Axes
-    image: AxesImage
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return self.ax.get_title(loc="left") or "the field from above"
-
-
-class WalkPlot(NamedTuple):
-    """What `figure_5_5` drew: the drift, the same without it, and walks that vary about it."""
-
-    ax: Axes
-    way: Line2D
-    bodies: PolyCollection
-    straight: Line2D
-    reference: PolyCollection
-    walks: LineCollection
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return self.ax.get_title(loc="left")
-
-
-class PlacesPlot(NamedTuple):
-    """What `figure_5_8` drew: the balls placed by eq 5.1, and those placed evenly."""
-
-    ax: Axes
-    panels: tuple[Axes, Axes]
-    thesis: Line2D
-    area: Line2D
-
-    def __repr__(self) -> str:
-        """Return what the two pictures state."""
-        return "; ".join(panel.get_title(loc="left") for panel in self.panels)
-
-
-def body_outline(x: float, y: float, heading: float) -> NDArray[np.float64]:
-    """Return the corners of the robot's body from above, its nose last.
-
-    Parameters
-    ----------
-    x, y : float
-        Where it stands (mm).
-    heading : float
-        Where it looks (rad).
-
-    Returns
-    -------
-    array, shape (5, 2)
-        Corners (mm): a rectangle of 317 x 180 mm, pointed a little ahead.
-
-    Examples
-    --------
-    >>> body_outline(0.0, 0.0, 0.0)[-1]
-    array([158.5,   0. ])
-    """
-    length, width = pitch.ROBOT_LENGTH / 2, pitch.ROBOT_WIDTH / 2
-    neck = length - width / 2
-    corners = np.array([[neck, width], [-length, width], [-length, -width], [neck, -width]])
-    c, s = math.cos(heading), math.sin(heading)
-    return np.vstack([corners, [length, 0.0]]) @ np.array([[c, s], [-s, c]]) + [x, y]
+_NEAR_GOAL = (1000.0, 3000.0, -700.0, 700.0)  # what figures 5.31 to 5.33 show (mm)
 
 
 def plot_bodies(poses: ArrayLike, ax: Axes | None = None, **look: Any) -> PolyCollection:
-    """Draw the outline of the robot's body at one or more poses.
+    """Draw the outline of the robot's body at each pose.
 
     Parameters
     ----------
     poses : array_like, shape (n, 3)
         x, y (mm) and heading (rad).
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; by default on new axes.
     **look
         Passed to `matplotlib.collections.PolyCollection`.
-
-    Returns
-    -------
-    matplotlib.collections.PolyCollection
 
     Examples
     --------
@@ -121,7 +70,7 @@ def plot_bodies(poses: ArrayLike, ax: Axes | None = None, **look: Any) -> PolyCo
     >>> len(plot_bodies([[0, 0, 0], [500, 0, 0.1]], Figure().subplots()).get_paths())
     2
     """
-    ax = style.axes(ax) if ax is None else ax
+    ax = ax or style.axes()
     outlines = [body_outline(*pose) for pose in _checks.array("poses", poses, (None, 3)).tolist()]
     bodies = PolyCollection(outlines, **({"facecolors": "none", "edgecolors": style.INK} | look))
     ax.add_collection(bodies)
@@ -135,26 +84,26 @@ def plot_field(
     title: str = "",
     trail: Sequence[tuple[float, float]] = (),
     sight: bool = False,
-) -> Picture:
-    """Draw the field from above, with millimeters along its sides.
+) -> Plot:
+    """Draw the field from above, with axes in millimeters.
 
     Parameters
     ----------
     world : World
         The field as it is now.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; by default on new axes.
     title : str
-        What the picture states.
+        The fact that the picture states.
     trail : sequence of (x, y)
-        Where the robot has been (mm).
+        The path of the robot so far (mm).
     sight : bool
         Whether to show the camera's field of view.
 
     Returns
     -------
-    Picture
-        ``ax`` and ``image``.
+    Plot
+        With the ``image``.
 
     Examples
     --------
@@ -167,27 +116,107 @@ def plot_field(
     )
     image = ax.imshow(bird_view(world, trail=trail, sight=sight), extent=EXTENT)
     ax.set(xticks=range(-3000, 3001, 1000), yticks=range(-2000, 2001, 1000))
-    return Picture(ax, image)
+    return Plot(ax, "the field from above", image=image)
 
 
-def figure_5_3(ax: Axes | None = None, *, world: World | None = None) -> Picture:
+def figure_5_1(ax: Axes | None = None) -> Plot:
+    """Draw figure 5.1, the field with robot, ball and goal.
+
+    Returns
+    -------
+    Plot
+        With the ``image``, and ``names``: an annotation for each of robot, ball and goal.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> list(figure_5_1(Figure().subplots()).names)
+    ['robot', 'ball', 'goal']
+    """
+    world = World(rng=0)
+    world.reset((-1500.0, -300.0, 0.3), (300.0, 700.0))
+    plot = plot_field(world, ax, title="the robot's world, 6,000 x 4,000 mm, from above")
+    goal = pitch.LENGTH / 2 - pitch.BOX_DEPTH / 2, 0.0  # beside it, where a name has room
+    places = {"robot": world.pose[:2], "ball": world.ball, "goal": goal}
+    names = {
+        name: plot.ax.annotate(
+            name, place, xytext=(0, 0) if name == "goal" else (0, -22),
+            textcoords="offset points", ha="center", va="center", color="white", fontsize=9,
+        )
+        for name, place in places.items()
+    }  # fmt: skip
+    return Plot(plot.ax, image=plot.image, names=names)
+
+
+def figure_5_2(ax: Axes | None = None) -> Plot:
+    """Draw figure 5.2, the control panel; `arkaq_edu.widgets.control_panel` is the live one.
+
+    Returns
+    -------
+    Plot
+        With ``handles``, one for each setting, and the pictures ``eye`` and ``above``: what the
+        robot sees after five steps and a look with these settings, and the field from above.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> float(figure_5_2(Figure().subplots()).handles["head (rad)"].get_xdata()[0])
+    -0.3
+    """
+    left, right, head = SETTINGS
+    world = World(rng=0)
+    world.reset((-800.0, -500.0, 0.0), (1000.0, 300.0))
+    trail = [world.pose[:2]]
+    for _ in range(5):
+        world.cycle(left, right)
+        trail.append(world.pose[:2])
+    motion.look(world, head)
+    ax = style.axes(ax, title=f"five steps of {left:.0f} and {right:.0f} mm, then a look aside")
+    ax.axis("off")
+    ends = {
+        "left stride (mm)": LONGEST_FOOTSTEP,
+        "right stride (mm)": LONGEST_FOOTSTEP,
+        "head (rad)": world.head.reach,
+    }
+    handles = {
+        name: _plot_slider(ax, 0.93 - 0.13 * row, name, SETTINGS[row], end)
+        for row, (name, end) in enumerate(ends.items())
+    }
+    eye, above = ax.inset_axes((0.0, 0.0, 0.4, 0.54)), ax.inset_axes((0.42, 0.0, 0.58, 0.54))
+    eye.axis("off")
+    above.axis("off")
+    return Plot(
+        ax,
+        handles=handles,
+        eye=eye.imshow(Camera().picture(world)),
+        above=above.imshow(bird_view(world, trail=trail), extent=EXTENT),
+    )
+
+
+def _plot_slider(ax: Axes, y: float, name: str, value: float, end: float) -> Line2D:
+    rail = ax.inset_axes((0.26, y - 0.01, 0.66, 0.02))
+    rail.spines[["left", "right", "top"]].set_visible(False)
+    rail.set(xlim=(-end, end), ylim=(0, 1), yticks=[], xticks=(-end, 0, end))
+    rail.tick_params(labelsize="x-small", length=2, pad=1)
+    ax.text(0.0, y, name, va="center", fontsize=9, transform=ax.transAxes)
+    (handle,) = rail.plot([value], [0], "o", color=style.OURS, clip_on=False)
+    return handle
+
+
+def figure_5_3(ax: Axes | None = None, *, world: World | None = None) -> Plot:
     """Draw figure 5.3, what the camera sees.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; by default on new axes.
     world : World, optional
-        The field as it is now; by default the ball lies a good meter away, a little to the left.
+        The field as it is now; by default the ball lies a little over a meter away, to the left.
 
     Returns
     -------
-    Picture
-        ``ax`` and ``image``.
-
-    References
-    ----------
-    Thesis, section 5.1.2.1.
+    Plot
+        With the ``image``.
 
     Examples
     --------
@@ -201,13 +230,54 @@ def figure_5_3(ax: Axes | None = None, *, world: World | None = None) -> Picture
     camera = Camera()
     seen, (distance, orientation) = camera.sighting(world), world.ball_from_robot()
     says = "no ball" if seen is None else f"{seen.distance:,.0f} mm, {seen.orientation:+.3f} rad"
-    ax = style.axes(
-        ax,
-        xlabel="column (pixel)",
-        ylabel="row (pixel)",
-        title=f"seen: {says}; true: {distance:,.0f} mm, {orientation:+.3f} rad",
-    )
-    return Picture(ax, ax.imshow(camera.picture(world)))
+    title = f"seen: {says}; true: {distance:,.0f} mm, {orientation:+.3f} rad"
+    ax = style.axes(ax, xlabel="column (pixel)", ylabel="row (pixel)", title=title)
+    return Plot(ax, image=ax.imshow(camera.picture(world)))
+
+
+def figure_5_4(ax: Axes | None = None) -> Plot:
+    """Draw figure 5.4, the modules of the Cerberus code, and which of them the thesis bypasses.
+
+    Returns
+    -------
+    Plot
+        With ``parts`` by name and ``wires`` by (from, to).
+
+    References
+    ----------
+    Thesis, section 5.1.2. The wires between the modules are ours.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> figure_5_4(Figure().subplots())
+    of five modules two are used, vision and motion; ARKAQ takes the place of the planner
+    """
+    title = "of five modules two are used, vision and motion; ARKAQ takes the place of the planner"
+    ax = blank(ax, title, (0.0, 9.2), (0.5, 4.5))
+    parts = {}
+    for name, (place, used) in MODULES.items():
+        if used:
+            parts[name] = box(ax, place, name, width=1.5)
+        else:
+            frame(ax, (place[0] - 0.8, place[1] - 0.35), 1.6, 0.7)
+            parts[name] = words(ax, place, name, color=style.QUIET)
+    routes: dict[tuple[str, str], tuple[Place, ...]] = {
+        ("vision", "localization"): ((1.75, 2.6), (2.6, 2.6)),
+        ("localization", "planner"): ((4.2, 2.6), (5.0, 2.6)),
+        ("planner", "motion"): ((6.6, 2.6), (7.45, 2.6)),
+        ("communication", "planner"): ((5.4, 3.9), (5.8, 3.9), (5.8, 2.95)),
+        ("vision", "ARKAQ"): ((1.0, 2.25), (1.0, 1.1), (3.85, 1.1)),
+        ("ARKAQ", "motion"): ((5.35, 1.1), (8.2, 1.1), (8.2, 2.25)),
+    }
+    wires = {ends: wire(ax, *corners) for ends, corners in routes.items()}
+    for ends, arrow in wires.items():
+        if "ARKAQ" not in ends:
+            arrow.set(color=style.QUIET, linestyle="--", linewidth=0.8)
+    words(ax, (2.4, 0.75), "distance, orientation")
+    words(ax, (6.9, 0.75), "footsteps, kick")
+    words(ax, (0.2, 3.9), "dashed: bypassed", "left", style.QUIET)
+    return Plot(ax, parts=parts, wires=wires)
 
 
 def figure_5_5(
@@ -216,27 +286,27 @@ def figure_5_5(
     cycles: int = 20,
     n: int = 12,
     rng: int | np.random.Generator = 0,
-) -> WalkPlot:
-    """Draw figure 5.5: the robot is told to walk straight, and drifts left and turns right.
+) -> Plot:
+    """Draw figure 5.5: told to walk straight, the robot drifts left and turns right.
 
-    The drift is the gait's, the same in every walk; the footsteps vary about it.
+    The drift belongs to the gait and is the same in every walk. The footsteps vary around it.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; by default on new axes.
     cycles : int
-        Footstep cycles of 100 mm each.
+        Number of footstep cycles, of 100 mm each.
     n : int
-        Walks whose footsteps vary.
+        Number of walks whose footsteps vary.
     rng : int or numpy.random.Generator
-        Where the variation comes from.
+        Source of that variation.
 
     Returns
     -------
-    WalkPlot
-        ``way`` and ``bodies`` of the drift alone, ``straight`` and ``reference`` without it, and
-        ``walks``, as the robot really walks.
+    Plot
+        ``walked`` and ``bodies`` show the drift alone, ``straight`` and ``reference`` a walk
+        without it, and ``walks`` the walks that vary.
 
     References
     ----------
@@ -246,55 +316,47 @@ def figure_5_5(
     --------
     >>> from matplotlib.figure import Figure
     >>> plot = figure_5_5(Figure().subplots(), cycles=10, n=2)
-    >>> x, y = plot.way.get_data()
+    >>> x, y = plot.walked.get_data()
     >>> len(x), bool(y[-1] > 0)
     (11, True)
     """
-    rng = np.random.default_rng(rng)
-    gait = Legs()
-    meant = _straight_walk(cycles, World(rng=rng, legs=Legs(slide=0.0, pull=0.0, variation=0.0)))
-    drift = _straight_walk(cycles, World(rng=rng, legs=replace(gait, variation=0.0)))
-    walked = [_straight_walk(cycles, World(rng=rng, legs=gait))[:, :2] for _ in range(n)]
+    rng, legs = np.random.default_rng(rng), Legs()
+    perfect, drifting = Legs(slide=0.0, pull=0.0, variation=0.0), replace(legs, variation=0.0)
+    meant = motion.straight_walk(World(rng=rng, legs=perfect), cycles)
+    drift = motion.straight_walk(World(rng=rng, legs=drifting), cycles)
+    varied = [motion.straight_walk(World(rng=rng, legs=legs), cycles)[:, :2] for _ in range(n)]
     x, y, heading = drift[-1]
+    aside = f"{abs(y):.0f} mm to the {'left' if y > 0 else 'right'}"
+    turned = f"turned {abs(heading):.3f} rad to the {'left' if heading > 0 else 'right'}"
     ax = style.axes(
-        ax,
-        xlabel="way ahead (mm)",
-        ylabel="to the left (mm)",
-        title=f'after {x / 1000:.1f} m "straight": drift {_side(y)}, {_turn(heading)}',
-    )
-    shown = slice(None, None, 5)
+        ax, xlabel="way ahead (mm)", ylabel="to the left (mm)",
+        title=f'after {x / 1000:.1f} m "straight": drift {aside}, {turned}',
+    )  # fmt: skip
     (straight,) = ax.plot(*meant[:, :2].T, "--", color=style.QUIET, label="meant")
-    reference = plot_bodies(meant[shown], ax, edgecolors=style.QUIET, linestyles="--")
-    walks = LineCollection(walked, colors=style.OURS, lw=0.7, alpha=0.4, label=f"{n} walks")
+    reference = plot_bodies(meant[::5], ax, edgecolors=style.QUIET, linestyles="--")
+    walks = LineCollection(varied, colors=style.OURS, lw=0.7, alpha=0.4, label=f"{n} walks")
     ax.add_collection(walks)
-    (way,) = ax.plot(*drift[:, :2].T, color=style.OURS, lw=2, label="drift alone")
-    bodies = plot_bodies(drift[shown], ax, edgecolors=style.OURS)
+    (walked,) = ax.plot(*drift[:, :2].T, color=style.OURS, lw=2, label="drift alone")
+    bodies = plot_bodies(drift[::5], ax, edgecolors=style.OURS)
     ax.set(aspect="equal", xlim=(-250, meant[-1, 0] + 250), ylim=(-350, 550))
     ax.legend(loc="upper left", ncols=3, frameon=False)
-    return WalkPlot(ax, way, bodies, straight, reference, walks)
+    return Plot(
+        ax, walked=walked, bodies=bodies, straight=straight, reference=reference, walks=walks
+    )
 
 
-def figure_5_7(ax: Axes | None = None) -> Picture:
+def figure_5_7(ax: Axes | None = None) -> Plot:
     """Draw figure 5.7, the robot's field of view on the field.
-
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
 
     Returns
     -------
-    Picture
-        ``ax`` and ``image``.
-
-    References
-    ----------
-    Thesis, section 5.2.1.
+    Plot
+        With the ``image``.
 
     Examples
     --------
     >>> from matplotlib.figure import Figure
-    >>> "0.497 rad" in figure_5_7(Figure().subplots()).ax.get_title(loc="left")
+    >>> "0.497 rad" in repr(figure_5_7(Figure().subplots()))
     True
     """
     world = World(rng=0)
@@ -309,26 +371,26 @@ def figure_5_7(ax: Axes | None = None) -> Picture:
 
 def figure_5_8(
     ax: Axes | None = None, *, n: int = 1000, rng: int | np.random.Generator = 0
-) -> PlacesPlot:
-    """Draw figure 5.8: random places of the ball by eq 5.1, beside places even on the field.
+) -> Plot:
+    """Draw figure 5.8: places of the ball drawn by eq 5.1, beside places uniform on the field.
 
-    Equation 5.1 draws the depth evenly, and then the place across, so that every depth gets as
-    many balls as any other; but the view is narrow where it is near. The density of balls falls
-    as one over the depth.
+    Equation 5.1 draws the depth uniformly, and then the place across. So each depth gets equally
+    many balls, although the view is narrow where it is near: the density of balls falls as one
+    over the depth.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
-        What is divided in two; fresh axes where it is None.
+        Axes to divide in two; by default new ones.
     n : int
-        Balls in either half.
+        Number of balls in each half.
     rng : int or numpy.random.Generator
-        Where the places come from.
+        Source of the places.
 
     Returns
     -------
-    PlacesPlot
-        ``thesis`` and ``area``: the marks, each on axes of its own.
+    Plot
+        ``thesis`` and ``area`` are the marks, each on its own axes in ``panels``.
 
     References
     ----------
@@ -340,27 +402,20 @@ def figure_5_8(
     >>> len(figure_5_8(Figure().subplots(), n=50).area.get_xdata())
     50
     """
-    rng = np.random.default_rng(rng)
-    n = _checks.integer("n", n, 1)
+    rng, n = np.random.default_rng(rng), _checks.integer("n", n, 1)
     ax = style.axes(ax)
     ax.axis("off")
     left, right = ax.inset_axes((0.0, 0.0, 0.46, 1.0)), ax.inset_axes((0.54, 0.0, 0.46, 1.0))
-    thesis = _plot_places(left, "eq 5.1", "thesis", n, rng)
-    area = _plot_places(right, "even", "area", n, rng)
-    return PlacesPlot(ax, (left, right), thesis, area)
+    thesis = _plot_places(left, "eq 5.1", [random_place(rng, placement="thesis") for _ in range(n)])
+    area = _plot_places(right, "even", [random_place(rng) for _ in range(n)])
+    fact = "; ".join(panel.get_title(loc="left") for panel in (left, right))
+    return Plot(ax, fact, panels=(left, right), thesis=thesis, area=area)
 
 
-def _plot_places(
-    ax: Axes, name: str, placement: Placement, n: int, rng: np.random.Generator
-) -> Line2D:
-    places = np.array([random_place(rng, placement=placement) for _ in range(n)])
-    distance, orientation = places.T
-    ax = style.axes(
-        ax,
-        xlabel="aside (mm), left is left",
-        ylabel="ahead (mm)",
-        title=f"{name}: {(distance < 1000).mean():.0%} within 1 m",
-    )
+def _plot_places(ax: Axes, name: str, places: list[tuple[float, float]]) -> Line2D:
+    distance, orientation = np.array(places).T
+    title = f"{name}: {(distance < 1000).mean():.0%} within 1 m"
+    ax = style.axes(ax, xlabel="aside (mm), left is left", ylabel="ahead (mm)", title=title)
     rim = np.linspace(-FIELD_OF_VIEW / 2, FIELD_OF_VIEW / 2, 30)
     border = MAX_BALL_DISTANCE * np.array([np.sin(rim), np.cos(rim)])
     ax.plot(*np.pad(border, ((0, 0), (1, 1))), color=style.QUIET, lw=1)
@@ -372,19 +427,162 @@ def _plot_places(
     return marks
 
 
-def _straight_walk(cycles: int, world: World) -> NDArray[np.float64]:
-    """Return the poses of a walk of equal footsteps, counted from where it begins."""
-    world.reset(ROBOT_START, (0.0, 1500.0))
-    poses = [world.pose]
-    for _ in range(_checks.integer("cycles", cycles, 1)):
-        world.cycle(100.0, 100.0)
-        poses.append(world.pose)
-    return np.array(poses) - ROBOT_START
+def figure_5_31(ax: Axes | None = None) -> Plot:
+    """Draw figure 5.31: the supervisor has put the ball before the paw.
+
+    Returns
+    -------
+    Plot
+        With the ``image``.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> figure_5_31(Figure().subplots())
+    ready: 246 mm to the ball, 1,400 mm to the goal
+    """
+    world = ready_to_kick(seed=0)
+    to_ball, _ = world.ball_from_robot()
+    to_goal = pitch.LENGTH / 2 - world.pose[0]
+    title = f"ready: {to_ball:.0f} mm to the ball, {to_goal:,.0f} mm to the goal"
+    return _plot_near_goal(ax, bird_view(world, sight=False, region=_NEAR_GOAL), title)
 
 
-def _side(y: float) -> str:
-    return f"{abs(y):.0f} mm to the {'left' if y > 0 else 'right'}"
+def figure_5_32(ax: Axes | None = None, *, after: float = 0.25) -> Plot:
+    """Draw figure 5.32: the paw has swung, and the ball is rolling.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; by default on new axes.
+    after : float
+        Time since the swing began (s), in [0, 3]. At .06 the paw is still swinging.
+
+    Returns
+    -------
+    Plot
+        With the ``image``.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> figure_5_32(Figure().subplots(), after=0.05)
+    kicking, after 0.05 s: the paw is on its way
+    """
+    picture, rolled = photograph_kick(after, region=_NEAR_GOAL)
+    done = f"the ball has rolled {rolled:,.0f} mm" if rolled > 0.0 else "the paw is on its way"
+    return _plot_near_goal(ax, picture, f"kicking, after {after:g} s: {done}")
 
 
-def _turn(heading: float) -> str:
-    return f"turned {abs(heading):.3f} rad to the {'left' if heading > 0 else 'right'}"
+def figure_5_33(ax: Axes | None = None) -> Plot:
+    """Draw figure 5.33, a missed goal: the first miss of a robot that aims at the middle.
+
+    Returns
+    -------
+    Plot
+        With the ``image``.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> figure_5_33(Figure().subplots())
+    missed: the ball lies 1,402 mm from the robot, not in the goal
+    """
+    world, path = first_miss()
+    distance, _ = world.ball_from_robot()
+    title = f"missed: the ball lies {distance:,.0f} mm from the robot, not in the goal"
+    picture = bird_view(world, sight=False, ball_trail=path, region=_NEAR_GOAL)
+    return _plot_near_goal(ax, picture, title)
+
+
+def _plot_near_goal(ax: Axes | None, pixels: NDArray[np.uint8], title: str) -> Plot:
+    ax = style.axes(ax, xlabel="x (mm)", ylabel="y (mm)", title=title)
+    return Plot(ax, image=ax.imshow(pixels, extent=_NEAR_GOAL))
+
+
+def plot_kicks(measured: pd.DataFrame, simulated: pd.DataFrame, ax: Axes | None = None) -> Plot:
+    """Draw where kicked balls came to rest: hollow for a real robot, filled for ours.
+
+    Parameters
+    ----------
+    measured, simulated : DataFrame
+        One row per kick: x ahead and y to the left (mm).
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; by default on new axes.
+
+    Returns
+    -------
+    Plot
+        With the marks ``measured`` and ``simulated``.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> one = pd.DataFrame({"x": [2000.0], "y": [100.0]})
+    >>> plot_kicks(one, one, Figure().subplots())
+    1 kick of a real robot, 1 simulated
+    """
+    count = f"{len(measured)} kick{'s' * (len(measured) != 1)}"
+    title = f"{count} of a real robot, {len(simulated)} simulated"
+    ax = style.axes(ax, xlabel="ahead (mm)", ylabel="to the left (mm)", title=title)
+    (ours,) = ax.plot(
+        simulated.x, simulated.y, "o", color=style.OURS, markersize=4, markeredgewidth=0,
+        label="simulated",
+    )  # fmt: skip
+    theirs = style.measurements(measured.x, measured.y, ax, markersize=6, label="real")
+    ax.plot(0, 0, "+", color=style.INK, markersize=10)
+    ax.set(aspect="equal", xlim=(-200, 4500), ylim=(-1900, 1900))
+    ax.legend(loc="lower left", frameon=False)
+    return Plot(ax, measured=theirs, simulated=ours)
+
+
+def plot_distance_error(
+    distance: ArrayLike, error: ArrayLike, ax: Axes | None = None, *, pixels: float = 0.05
+) -> Plot:
+    """Draw how the error of the distance grows, with a power of the distance fitted to it.
+
+    Parameters
+    ----------
+    distance, error : array_like, shape (n,)
+        Distances (mm), and the standard deviation of the distance seen at each (mm), > 0.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; by default on new axes.
+    pixels : float
+        Error of the blob's radius (pixels), for the line of an ideal camera.
+
+    Returns
+    -------
+    Plot
+        The marks ``measured``, the lines ``fit`` and ``pinhole``, and the ``exponent``.
+
+    References
+    ----------
+    Not in the thesis; see `arkaq_edu.field.Camera.distance_error`.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> plot_distance_error([1000, 2000], [10, 40], Figure().subplots())
+    the error goes as distance to the power 2.00
+    """
+    x = _checks.array("distance", distance, (None,))
+    y = _checks.array("error", error, (len(x),))
+    exponent, factor = fit_power(x, y)
+    title = f"the error goes as distance to the power {exponent:.2f}"
+    ax = style.axes(
+        ax, xlabel="distance (mm)", ylabel="error of the distance seen (mm)", title=title
+    )
+    along = np.geomspace(x.min(), x.max(), 30)
+    (fit,) = ax.plot(along, factor * along**exponent, color=style.OURS, label="fit")
+    (pinhole,) = ax.plot(
+        along, Camera().distance_error(along, pixels), "--", color=style.QUIET,
+        label=f"pinhole, {pixels:g} pixels off",
+    )  # fmt: skip
+    marks = style.measurements(x, y, ax, label="measured")
+    ax.set(xscale="log", yscale="log")
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(StrMethodFormatter("{x:,g}"))
+        axis.set_minor_locator(NullLocator())
+    ax.legend(frameon=False)
+    return Plot(ax, measured=marks, fit=fit, pinhole=pinhole, exponent=exponent)

@@ -27,7 +27,6 @@ from arkaq_edu.figures import (
     mdp,
     policy,
     pomdp,
-    scenes,
     segmentation,
     trajectories,
 )
@@ -40,7 +39,6 @@ _ROOMS = (
     kalman,
     distance,
     field,
-    scenes,
     automata,
     segmentation,
     policy,

@@ -160,17 +160,11 @@ def goals_seen():
 
 def test_the_goal_looks_the_same_without_numba():
     here = [str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")]
+    script = "import json; from tests.field import test_goal as t; print(json.dumps(t.goals_seen()))"
     done = subprocess.run(
-        [
-            sys.executable,
-            "-c",
-            "import json; from tests.field import test_goal; print(json.dumps(test_goal.goals_seen()))",
-        ],
-        capture_output=True,
-        text=True,
-        timeout=300,
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=300,
         env=os.environ | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(here)},
-    )
+    )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout) == goals_seen()
 

@@ -105,8 +105,8 @@ def test_the_drift_of_a_straight_walk_is_that_of_the_gait():
     heading = gait.pull * s
     x = np.trapezoid(np.cos(heading) - gait.slide * np.sin(heading), s)
     y = np.trapezoid(np.sin(heading) + gait.slide * np.cos(heading), s)
-    way = np.array(plot.way.get_data())
-    assert way[:, -1] == pytest.approx([x, y], abs=3) and y > 0 > heading[-1]
+    walked = np.array(plot.walked.get_data())
+    assert walked[:, -1] == pytest.approx([x, y], abs=3) and y > 0 > heading[-1]
     assert f"{y:.0f} mm to the left, turned {-heading[-1]:.3f} rad to the right" in repr(plot)
     straight = np.array(plot.straight.get_data())
     assert straight[0] == pytest.approx(100 * np.arange(21), abs=3)

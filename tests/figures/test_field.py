@@ -1,4 +1,4 @@
-"""The scenes of the field: what their pictures show, and what their titles say."""
+"""The figures of the field: what their pictures show, and what their titles say."""
 
 import re
 
@@ -8,7 +8,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from arkaq_edu.field import Camera, World, motion, pitch
-from arkaq_edu.figures import gallery, scenes
+from arkaq_edu.figures import field, gallery
 from arkaq_edu.figures.drawing import style
 
 
@@ -34,11 +34,11 @@ def said(plot):
 
 def test_all_are_in_the_gallery():
     for number in ("5.1", "5.2", "5.4", "5.31", "5.32", "5.33"):
-        assert gallery.FIGURES[number] is getattr(scenes, f"figure_{number.replace('.', '_')}")
+        assert gallery.FIGURES[number] is getattr(field, f"figure_{number.replace('.', '_')}")
 
 
 def test_robot_ball_and_goal_stand_where_their_names_say(ax):
-    plot = scenes.figure_5_1(ax)
+    plot = field.figure_5_1(ax)
     ball, goal = painted(plot.image, pitch.ORANGE), painted(plot.image, pitch.BLUE)
     assert np.hypot(*(ball.mean(axis=0) - plot.names["ball"].xy)) < 30
     assert goal[:, 0].min() > 2600 and abs(goal[:, 1].mean()) < 50
@@ -52,8 +52,8 @@ def test_robot_ball_and_goal_stand_where_their_names_say(ax):
 
 
 def test_the_panels_handles_and_pictures_belong_together(ax):
-    plot = scenes.figure_5_2(ax)
-    left, right, head = scenes.TOLD
+    plot = field.figure_5_2(ax)
+    left, right, head = field.SETTINGS
     assert [float(handle.get_xdata()[0]) for handle in plot.handles.values()] == [left, right, head]
     ends = [handle.axes.get_xlim() for handle in plot.handles.values()]
     assert ends == [(-194, 194), (-194, 194), (-1.6, 1.6)]
@@ -68,11 +68,11 @@ def test_the_panels_handles_and_pictures_belong_together(ax):
 
 
 def test_the_modules_that_are_bypassed_are_dashed_and_the_others_lead_through_arkaq(ax):
-    plot = scenes.figure_5_4(ax)
+    plot = field.figure_5_4(ax)
     assert set(plot.parts) == {
         "vision", "communication", "localization", "planner", "motion", "ARKAQ",
     }  # fmt: skip
-    used = {name for name, (_, is_used) in scenes.MODULES.items() if is_used}
+    used = {name for name, (_, is_used) in field.MODULES.items() if is_used}
     assert used == {"vision", "motion", "ARKAQ"}
     for name, text in plot.parts.items():
         assert (text.get_color() == style.QUIET) == (name not in used)
@@ -85,7 +85,7 @@ def test_the_modules_that_are_bypassed_are_dashed_and_the_others_lead_through_ar
 
 
 def test_before_the_kick_the_ball_lies_before_the_paw(ax):
-    plot = scenes.figure_5_31(ax)
+    plot = field.figure_5_31(ax)
     distance, to_goal = re.match(r"ready: (\d+) mm to the ball, ([\d,]+) mm", said(plot)).groups()
     assert abs(int(distance) - 245) < 40 and to_goal == "1,400"
     ball = painted(plot.image, pitch.ORANGE).mean(axis=0)
@@ -93,10 +93,10 @@ def test_before_the_kick_the_ball_lies_before_the_paw(ax):
 
 
 def test_during_the_kick_the_ball_rolls(ax):
-    begin = painted(scenes.figure_5_31(ax).image, pitch.ORANGE).mean(axis=0)
+    begin = painted(field.figure_5_31(ax).image, pitch.ORANGE).mean(axis=0)
     before = -1.0
     for after in (0.02, 0.25, 0.6):
-        plot = scenes.figure_5_32(Figure().subplots(), after=after)
+        plot = field.figure_5_32(Figure().subplots(), after=after)
         rolled = re.search(r"rolled ([\d,]+) mm", said(plot))
         rolled = int(rolled[1].replace(",", "")) if rolled else 0
         ball = painted(plot.image, pitch.ORANGE, tolerance=15).mean(axis=0)
@@ -104,11 +104,11 @@ def test_during_the_kick_the_ball_rolls(ax):
         assert rolled > before
         before = rolled
     with pytest.raises(ValueError, match="after must be a number"):
-        scenes.figure_5_32(ax, after=60)
+        field.figure_5_32(ax, after=60)
 
 
 def test_a_missed_goal_is_one(ax):
-    plot = scenes.figure_5_33(ax)
+    plot = field.figure_5_33(ax)
     ball = painted(plot.image, pitch.ORANGE, tolerance=15).mean(axis=0)
     assert not (ball[0] > 2742 and abs(ball[1]) < 400)
     distance = int(re.search(r"([\d,]+) mm", said(plot))[1].replace(",", ""))
@@ -121,7 +121,7 @@ def test_measured_kicks_are_hollow_and_both_kinds_are_where_they_rest(ax):
         pd.DataFrame({"x": rng.uniform(500, 4000, n), "y": rng.uniform(-900, 900, n)})
         for n in (7, 12)
     )
-    plot = scenes.plot_kicks(real, ours, ax)
+    plot = field.plot_kicks(real, ours, ax)
     assert repr(plot) == "7 kicks of a real robot, 12 simulated"
     for marks, table in ((plot.measured, real), (plot.simulated, ours)):
         assert (marks.get_xydata() == table[["x", "y"]].to_numpy()).all()
@@ -131,7 +131,7 @@ def test_measured_kicks_are_hollow_and_both_kinds_are_where_they_rest(ax):
 @pytest.mark.parametrize("power", [1.0, 2.0, 2.5])
 def test_the_fit_finds_the_power_that_made_the_errors(ax, power):
     d = np.array([500.0, 1000.0, 1500.0, 3000.0])
-    plot = scenes.plot_distance_error(d, 3e-6 * d**power, ax, pixels=0.1)
+    plot = field.plot_distance_error(d, 3e-6 * d**power, ax, pixels=0.1)
     assert plot.exponent == pytest.approx(power)
     assert repr(plot) == f"the error goes as distance to the power {power:.2f}"
     x, y = plot.fit.get_data()
@@ -145,4 +145,4 @@ def test_the_fit_finds_the_power_that_made_the_errors(ax, power):
 @pytest.mark.parametrize("bad", [[[1.0]], [1.0, np.nan]])
 def test_bad_distances_are_refused(ax, bad):
     with pytest.raises(ValueError, match="distance must"):
-        scenes.plot_distance_error(bad, [1.0], ax)
+        field.plot_distance_error(bad, [1.0], ax)
