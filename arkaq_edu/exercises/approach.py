@@ -75,17 +75,15 @@ def _or_nothing(function: Callable[..., Any], *case: Any) -> Any:
         "all",
         "np.exp((q - q.max()) / temperature)": "your probabilities do not sum to 1: divide each by "
         "the sum of all",
-        "boltzmann(-q, temperature)": "the worst action is the likeliest: look at the sign in the "
+        "boltzmann(-q, temperature)": "the worst action is the likeliest: check the sign of the "
         "exponent",
         "boltzmann(q, 1 / temperature)": "you multiply by the temperature: a hot agent should "
         "choose more evenly, yours is surer",
-        "boltzmann(q, 1.0)": "the temperature changes nothing: divide the values by it, in the "
-        "exponent",
-        "np.eye(len(q))[q.argmax()]": "you give all to the best action: that is the limit of "
-        "temperature 0",
-        "np.full(len(q), 1 / len(q))": "you give all actions the same: that is the limit of an "
-        "infinite temperature",
-        "_normed(q)": "you share by the values themselves, which may be negative: take exp(value / "
+        "boltzmann(q, 1.0)": "the temperature changes nothing: divide the values by it, inside exp",
+        "np.eye(len(q))[q.argmax()]": "you always take the best action: the limit of temperature 0",
+        "np.full(len(q), 1 / len(q))": "all actions are equal: the limit of an infinite "
+        "temperature",
+        "_normed(q)": "you normalize the values, which may be negative: use exp(value / "
         "temperature)",
     },
     tell=lambda found, wanted, q, t: (
@@ -152,7 +150,7 @@ def _tell_backup(when: str) -> Callable[..., str]:
         "rewards[0] + gamma * next_values.max()": "you put the target in place of the old value: "
         "go only a step of size alpha toward it",
         "backup(q, rewards, next_values, ended, alpha, gamma) - q": "that is the change of Q: add "
-        "it to the old value",
+        "it",
         "backup(q, rewards, next_values, ended, 1 - alpha, gamma)": "alpha and 1 - alpha have "
         "changed places: alpha is the weight of what is new",
         "q + alpha * (rewards[0] + gamma * next_values.max())": "the target is added on top of the "
@@ -177,8 +175,7 @@ def _tell_backup(when: str) -> Callable[..., str]:
                 "ended nothing can follow: leave the next value out of the target there",
                 "rewards[0]": "you put the target in place of the old value where the episode "
                 "ends: there, too, go only a step of size alpha",
-                "q": "you learn nothing from an episode's last experience, though it holds the "
-                "reward",
+                "q": "you learn nothing from the last experience, though it holds the reward",
             },
         ),
         Part(
@@ -191,11 +188,12 @@ def _tell_backup(when: str) -> Callable[..., str]:
                 "_toward(q, rewards.sum(), gamma, next_values, ended, alpha)": "held for several "
                 "cycles, later rewards are worth less, and the next state comes later: one factor "
                 "of gamma for each cycle",
-                "backup(q, rewards, next_values * gamma ** (1 - len(rewards)), "
-                "ended, alpha, gamma)": "the rewards are right; but the next state is only reached "
-                "after all the cycles held, and you discount it by one",
+                "backup(q, rewards, next_values * gamma ** (1 - len(rewards)), ended, "
+                "alpha, gamma)": "the rewards are right; but the next state is only reached after "
+                "all the cycles held, and you discount it by one",
                 "backup(q, rewards, next_values / gamma, ended, alpha, gamma)": "the next state is "
-                "reached after as many cycles as there are rewards: you discount it by one too few",
+                "reached after as many cycles as there are rewards: you discount it by one too "
+                "few",
                 "backup(q, gamma * rewards, next_values, ended, alpha, gamma)": "the first reward "
                 "is discounted, though it is earned at once",
                 "_toward(q, rewards[0], gamma**len(rewards), next_values, ended, alpha)": "only "

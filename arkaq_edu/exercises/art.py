@@ -24,14 +24,14 @@ def _bits(rng: np.random.Generator, m: int) -> NDArray[np.int64]:
     "Divide that by the number of active inputs, pattern.sum().",
     cases=lambda rng: [(_bits(rng, m), _bits(rng, m)) for m in rng.integers(6, 26, 30).tolist()],
     wrong={
-        "(pattern & template).sum()": "you count the shared points: the match is a part of the "
-        "input, from 0 to 1",
+        "(pattern & template).sum()": "you count the shared points: the match is a share, from 0 "
+        "to 1",
         "(pattern & template).sum() / len(pattern)": "you divide by the number of all points: then "
         "a letter would not even match itself. Divide by the active inputs",
         "(pattern & template).sum() / template.sum()": "you divide by the size of the template: "
         "that asks how much of the expectation is there, not how much of the input was expected",
-        "(pattern == template).mean()": "you count points that are white in both as well: only "
-        "active inputs matter",
+        "(pattern == template).mean()": "you also count points white in both: only active inputs "
+        "matter",
         "(pattern & template).sum() / (pattern | template).sum()": "you divide by the points "
         "active in either: an expected point that is missing costs nothing here",
     },
@@ -149,8 +149,7 @@ def _norm_r(u: NDArray[np.float64], p: NDArray[np.float64], above: float, below:
         "_norm_r(u, d * z, c, c)": "your p is only d z: p is the sum of u and what is expected",
         "_norm_r(u, u + d * z, c, 1)": "below, the norm is that of c p, not of p",
         "norm_r(u, z, c, d)**2": "that is the square of it: take the square root",
-        "u @ z / np.linalg.norm(z)": "that is the cosine of u and z: the norm of r has to be "
-        "computed from it",
+        "u @ z / np.linalg.norm(z)": "that is the cosine of u and z: compute the norm of r from it",
     },
     tell=lambda found, wanted, u, z, c, d: (
         f"with c = {c:.2f} and d = {d:.2f} yours is {found:.4f}: it should be {wanted:.4f}"

@@ -36,11 +36,9 @@ def _sizes(rng: np.random.Generator) -> list[int]:
         "b": "the belief has not moved: the action changes the state, and so what is known of it",
         "b * T_a.sum(axis=0)": "your b multiplies the columns of T, where the robot arrives: it "
         "belongs to the rows, where it starts",
-        "T_a[b.argmax()]": "you go on from the likeliest state alone: the robot may have been in "
-        "any of them",
-        "T_a.mean(axis=0)": "you treat all starts alike: multiply each row of T by the belief in "
-        "it",
-        "T_a.sum(axis=0)": "you treat all starts alike: multiply each row of T by the belief in it",
+        "T_a[b.argmax()]": "you use the likeliest state alone: the robot may have been in any",
+        "T_a.mean(axis=0)": "you treat all starts alike: multiply each row of T by its belief",
+        "T_a.sum(axis=0)": "you treat all starts alike: multiply each row of T by its belief",
         "b * T_a.diagonal()": "you count only the robots that stay where they are",
     },
 )
@@ -65,20 +63,19 @@ def predict(b, T_a):
         "largest 1: a belief sums to 1",
         "b * likelihood / np.linalg.norm(b * likelihood)": "the proportions are right, but you "
         "gave it length 1: a belief sums to 1",
-        "_normed(likelihood)": "you believe the observation alone: what was known before is thrown "
-        "away",
-        "likelihood": "you believe the observation alone: what was known before is thrown away",
+        "_normed(likelihood)": "you believe the observation alone: keep what was known before",
+        "likelihood": "you believe the observation alone: keep what was known before",
         "b": "the observation changes nothing: states that seldom show it should lose",
-        "_normed(b + likelihood)": "you add: a state must have been likely before and likely to "
-        "show this, so multiply",
-        "(b + likelihood) / 2": "you take the mean: a state must have been likely before and "
-        "likely to show this, so multiply",
+        "_normed(b + likelihood)": "you add: likely before *and* likely to show this means "
+        "multiply",
+        "(b + likelihood) / 2": "you take the mean: likely before *and* likely to show this means "
+        "multiply",
         "_normed(b * b * likelihood)": "the belief is counted twice",
         "_normed(b * likelihood * likelihood)": "the observation is counted twice",
-        "_normed(b * (1 - likelihood))": "you take the probability that it was not observed, and "
-        "it was",
-        "_normed(b / likelihood)": "you divide by the likelihood: then the states that seldom show "
-        "it would gain",
+        "_normed(b * (1 - likelihood))": "you take the probability that it was not seen, but it "
+        "was",
+        "_normed(b / likelihood)": "you divide by the likelihood: states that seldom show it would "
+        "gain",
         "np.eye(len(b))[(b * likelihood).argmax()]": "you keep the likeliest state and forget the "
         "others: they may be right after all",
     },
@@ -109,10 +106,9 @@ def _models(rng: np.random.Generator) -> list[tuple[Any, ...]]:
     wrong={
         "b @ O_a": "you look from where the robot is now: first it acts, and O is for the state "
         "that the action has led to",
-        "T_a @ b @ O_a": "you go backwards through T: T[s, t] leads from s to t, and the belief is "
+        "T_a @ b @ O_a": "you go backwards through T: T[s, t] leads from s to t, the belief is "
         "over s",
-        "O_a[(b @ T_a).argmax()]": "you look from the likeliest state alone: the robot may be in "
-        "any of them",
+        "O_a[(b @ T_a).argmax()]": "you use the likeliest state alone: the robot may be in any",
         "O_a.mean(axis=0)": "you treat all states alike: multiply each row of O by how likely the "
         "action leads there",
         "O_a.sum(axis=0)": "you treat all states alike: multiply each row of O by how likely the "
@@ -137,9 +133,9 @@ def observation_chances(b, T_a, O_a):
     wrong={
         "R[b.argmax()]": "you treat the likeliest state as certain: the others earn something too, "
         "each with its probability",
-        "R.mean(axis=0)": "you treat all states alike: multiply each by the belief in it",
-        "R.sum(axis=0)": "you treat all states alike: multiply each by the belief in it",
-        "R.max(axis=0)": "you hope for the best state: multiply each by the belief in it",
+        "R.mean(axis=0)": "you treat all states alike: multiply each by its belief",
+        "R.sum(axis=0)": "you treat all states alike: multiply each by its belief",
+        "R.max(axis=0)": "you hope for the best state: multiply each by its belief",
         "b @ R / len(b)": "the weights sum to 1 already: there is nothing to divide by",
     },
 )

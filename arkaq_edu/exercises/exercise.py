@@ -48,7 +48,9 @@ def ask(function: Callable[..., Any], *arguments: Any) -> Any:
     if not callable(function):
         raise ExerciseError(f"pass the function by its name, without (...): got {function!r}")
     name = getattr(function, "__name__", "your function")
-    given = [a if isinstance(a, np.random.Generator) else copy.deepcopy(a) for a in arguments]
+    given: list[Any] = [
+        a if isinstance(a, np.random.Generator) else copy.deepcopy(a) for a in arguments
+    ]
     try:
         with np.errstate(all="ignore"):
             answer = function(*given)
@@ -62,7 +64,7 @@ def ask(function: Callable[..., Any], *arguments: Any) -> Any:
         raise ExerciseError(f"{name}({asked}) stopped with {problem}") from error
     if answer is None:
         raise ExerciseError(f"{name} returned nothing: does it end with a `return`?")
-    if not all(np.array_equal(*pair) for pair in zip(arguments, given, strict=True)):
+    if not all(np.array_equal(a, b) for a, b in zip(arguments, given, strict=True)):
         raise ExerciseError(f"{name} changes its arguments: let it work on a copy")
     return answer
 
@@ -199,9 +201,13 @@ class Exercise:
         """
         rng = np.random.default_rng(rng)
         cases: Sequence[tuple[Any, ...]] = []
+        known = ""
         for part in self.parts:
             cases = part.cases(rng) if part.cases else cases
-            self._judge(part, function, cases)
+            words = self._judge(part, function, cases)
+            if words:
+                raise ExerciseError(known + words if part.of else words)
+            known = f"the {part.of} is right; "
         print(self.praise)
 
     def hint(self) -> None:
@@ -247,7 +253,8 @@ class Exercise:
 
     def _judge(
         self, part: Part, function: Callable[..., Any], cases: Sequence[tuple[Any, ...]]
-    ) -> None:
+    ) -> str | None:
+        """Return what is wrong with the answers to the cases, or None."""
         answers = [part.answer(function, *case) for case in cases]
         wanted = [np.asarray((part.right or self.right)(*case), dtype=float) for case in cases]
         if part.of:
@@ -256,12 +263,12 @@ class Exercise:
             wanted = [value[k] for value in wanted]
         good = part.agree(answers, wanted)
         if all(good):
-            return
+            return None
         # Rules come before the shape: some wrong answers have another shape, and better words.
         for expression, words in part.wrong.items():
             rule = self.function(expression)
             if all(part.agree(answers, [rule(*case) for case in cases])):
-                raise ExerciseError(words)
+                return words
         found = [
             self.numbers(answer, value.shape) for answer, value in zip(answers, wanted, strict=True)
         ]
@@ -269,13 +276,13 @@ class Exercise:
         one, other = found[first], wanted[first]
         told = part.tell(one, other, *cases[first]) if part.tell else None
         if told:
-            raise ExerciseError(told)
+            return told
         place = int(np.argmin(part.close(one, other)))
         name = f"the {part.of}" if part.of else self.name
         if not part.of and isinstance(self.returns, tuple):
             name = self.returns[place]
         yours, ours = one.flat[place], other.flat[place]
-        raise ExerciseError(
+        return (
             f"{name} is right in {sum(good)} of {len(cases)} tries; one of yours, {yours:.5g}, is "
             f"too {'large' if yours > ours else 'small'}"
         )

@@ -63,14 +63,12 @@ def _near(found: NDArray[np.float64], wanted: NDArray[np.float64]) -> NDArray[np
         "are a whole body's width apart, not half of it",
         "_arc((left + right) / 2, (right - left) / _WIDTH / 2)": "it turns half as far: the lead "
         "of one side over the other is right - left, over one width",
-        "pose(left, right) * [1, 1, 180 / math.pi]": "the heading is in degrees: this course "
-        "counts in radians",
+        "pose(left, right) * [1, 1, 180 / math.pi]": "the heading is in degrees: use radians",
         "((left + right) / 2, 0.0, (right - left) / _WIDTH)": "the robot turns while it walks: "
         "heading and x are right or nearly so, but it cannot end on its old line",
         "_turned_first((left + right) / 2, (right - left) / _WIDTH)": "you turn first and walk "
         "then: on average the robot has turned by half while it walks",
-        "pose(left, right) * [1, -1, 1]": "heading and x are right, but y is on the wrong side: "
-        "left is positive",
+        "pose(left, right) * [1, -1, 1]": "only y is on the wrong side: left is positive",
         "pose(left, right)[[1, 0, 2]]": "x and y are swapped: x is straight ahead",
     },
     then=(
@@ -114,29 +112,24 @@ def _blobs(rng: np.random.Generator) -> list[tuple[float, ...]]:
     of="distance",
     wrong={
         "f * radius / r": "your distance grows with the image: a ball that looks larger is nearer",
-        "2 * f * r / radius": "twice as far: you mix a diameter with a radius. Use two radii, or "
-        "two diameters",
-        "f * r / radius / 2": "half as far: you mix a diameter with a radius. Use two radii, or "
-        "two diameters",
+        "2 * f * r / radius": "twice as far: you mix a diameter with a radius. Use two radii",
+        "f * r / radius / 2": "half as far: you mix a diameter with a radius. Use two radii",
         "r / radius": "the focal length is missing: without it mm and pixels cannot be compared",
-        "f / radius": "the ball's size is missing: a small ball near by looks like a large one far "
-        "off",
+        "f / radius": "the ball's size is missing: a small near ball looks like a large far one",
     },
     then=(
         Part(
             of="error",
             wrong={
-                "f * r / off": "the distance is right; but its error is not that of a ball of "
-                "`off` pixels: how much does the distance change when the radius does?",
-                "-off * f * r / radius**2": "the distance is right, and its error up to the sign: "
-                "return its size",
-                "f * r / radius**2": "the distance is right; that is its error for one whole "
-                "pixel, and it is `off` pixels",
-                "off * f * r / radius": "the distance is right; but its error is not the share "
-                "`off` of it: differentiate f r / radius",
-                "off": "the distance is right; but its error is in mm, and `off` in pixels",
-                "off / (f * r)": "the distance is right; but its error has to depend on how far "
-                "the ball is: differentiate f r / radius",
+                "f * r / off": "that is the distance of a ball of `off` pixels: how much does the "
+                "distance change when the radius does?",
+                "-off * f * r / radius**2": "its error is right up to the sign: return its size",
+                "f * r / radius**2": "that is its error for one whole pixel, not for `off` pixels",
+                "off * f * r / radius": "its error is not the share `off` of it: differentiate f r "
+                "/ radius",
+                "off": "its error is in mm, and `off` in pixels",
+                "off / (f * r)": "its error depends on how far the ball is: differentiate f r / "
+                "radius",
             },
         ),
     ),
@@ -175,8 +168,7 @@ def _kicks(rng: np.random.Generator) -> list[tuple[float, ...]]:
         "np.diff(norm.cdf((np.array([-400, 400]) / distance - aim) / sigma))[0]": "400 / distance "
         "is the tangent of the angle to a post; the angle is its arctan",
         "1 - scoring_chance(distance, sigma, aim)": "that is the probability of a miss",
-        "100 * scoring_chance(distance, sigma, aim)": "that is a percentage: a probability lies "
-        "between 0 and 1",
+        "100 * scoring_chance(distance, sigma, aim)": "that is a percentage: return a share of 1",
     },
 )
 def scoring_chance(distance, sigma, aim):

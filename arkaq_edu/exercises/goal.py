@@ -45,24 +45,23 @@ def _chances(rng: np.random.Generator) -> list[tuple[float, ...]]:
     wrong={
         "worth(now, then, gamma, cost)[1]": "return the kick at once first, and the turn second",
         "100 * now + cost": "a miss is not worth 0: it is punished by -100",
-        "100 * now": "a miss is not worth 0: it is punished by -100; and a kick takes a cycle, at "
-        "its cost",
+        "100 * now": "a miss is not worth 0: it is punished by -100; and a kick takes a cycle, so "
+        "add cost",
         "_kick(now, 0.0)": "a kick takes a cycle too: it has its cost",
         "_kick(now, -cost)": "the cost is given as a negative number: it is added",
-        "gamma * _kick(now, cost)": "what comes at once is not discounted: gamma multiplies what "
-        "comes a cycle later",
+        "gamma * _kick(now, cost)": "what comes at once is not discounted: only what comes later "
+        "is",
     },
     then=(
         Part(
             of="turn",
             wrong={
-                "cost + _kick(then, cost)": "what comes after the turn comes a cycle later: it is "
+                "cost + _kick(then, cost)": "what follows the turn comes a cycle later: it is "
                 "discounted",
-                "gamma * _kick(then, cost)": "the turn itself takes a cycle, which has its cost",
-                "cost + gamma * _kick(then, 0.0)": "after the turn comes a kick, which takes a "
-                "cycle too",
-                "gamma * (cost + _kick(then, cost))": "the turn's own cost is due at once: it is "
-                "not discounted",
+                "gamma * _kick(then, cost)": "the turn itself takes a cycle, at its cost",
+                "cost + gamma * _kick(then, 0.0)": "the kick after the turn takes a cycle too",
+                "gamma * (cost + _kick(then, cost))": "the turn's cost is due at once: not "
+                "discounted",
                 "cost + gamma * _kick(now, cost)": "after the turn the kick has another chance: "
                 "the second one that you are given",
                 "cost + gamma * _kick(max(now, then), cost)": "after the turn there is no choice "
@@ -158,18 +157,15 @@ def _robots(rng: np.random.Generator) -> list[tuple[float, ...]]:
     answer=_whole("kicks"),
     wrong={
         "np.floor(_enough(p, q, sigmas))": "you round down: that many are not quite enough",
-        "2 * kicks_needed(p, q, sigmas)": "those are the kicks of both robots together: each needs "
-        "half of them",
-        "np.ceil(sigmas**2 * p * (1 - p) / (p - q)**2)": "only the first robot has luck in your "
-        "formula: both have",
-        "np.ceil(sigmas**2 * q * (1 - q) / (p - q)**2)": "only the second robot has luck in your "
-        "formula: both have",
-        "np.ceil(_enough(p, q, sigmas) / sigmas)": "the standard error falls with the root of n: "
-        "so `sigmas` must be squared",
-        "np.ceil(_enough(p, q, sigmas) * abs(p - q))": "the standard error falls with the root of "
-        "n: so the difference must be squared",
-        "np.ceil(sigmas**2 * (np.sqrt(p * (1 - p)) + np.sqrt(q * (1 - q)))**2 / (p - q)**2)": "you "
-        "add standard errors: if two are independent, add their variances",
+        "2 * kicks_needed(p, q, sigmas)": "those are the kicks of both robots together: halve it",
+        "np.ceil(sigmas**2 * p * (1 - p) / (p - q)**2)": "only the first robot varies: both do",
+        "np.ceil(sigmas**2 * q * (1 - q) / (p - q)**2)": "only the second robot varies: both do",
+        "np.ceil(_enough(p, q, sigmas) / sigmas)": "the error falls with the root of n: `sigmas` "
+        "must be squared",
+        "np.ceil(_enough(p, q, sigmas) * abs(p - q))": "the error falls with the root of n: the "
+        "difference must be squared",
+        "np.ceil(sigmas**2 * (np.sqrt(p * (1 - p)) + np.sqrt(q * (1 - q)))**2 / "
+        "(p - q)**2)": "you add standard errors: if two are independent, add their variances",
         "np.ceil(sigmas**2 * (p + q) / (p - q)**2)": "the variance of one kick, which scores or "
         "does not, is p (1 - p), not p",
     },

@@ -27,29 +27,25 @@ def _rulers(rng: np.random.Generator) -> list[tuple[float, ...]]:
         "(a + b) / 2": "you take the middle, as if both rulers were equally good",
         "(a * var_a + b * var_b) / (var_a + var_b)": "the worse ruler counts for more: a large "
         "variance should make a small weight",
-        "combine(a, var_a**0.5, b, var_b**0.5)[0]": "you weigh by standard deviations: use the "
+        "combine(a, var_a**0.5, b, var_b**0.5)[0]": "you weigh by standard deviations: use "
         "variances",
-        "a / var_a + b / var_b": "each is divided by its variance, but the weights do not sum to 1 "
-        "yet",
-        "a if var_a < var_b else b": "you keep the better ruler and throw the other away: it knows "
-        "something too",
+        "a / var_a + b / var_b": "dividing by the variances is right; but make the weights sum to "
+        "1",
+        "a if var_a < var_b else b": "you throw the other away: the worse ruler knows something "
+        "too",
     },
     then=(
         Part(
             of="variance",
             wrong={
-                "var_a + var_b": "the mean is right; but variances that add up would make two "
-                "rulers worse than one",
-                "(var_a + var_b) / 2": "the mean is right; but a variance halfway between would "
-                "make two rulers worse than the better one",
-                "(var_a + var_b) / 4": "the mean is right; that variance belongs to the plain "
-                "average, and you have a better mean",
-                "min(var_a, var_b)": "the mean is right; but two rulers are better than the better "
-                "one alone",
-                "1 / var_a + 1 / var_b": "the mean is right; this is the sum of the two "
-                "precisions: take 1 over it",
-                "combine(a, var_a, b, var_b)[1]**0.5": "the mean is right; that is the standard "
-                "deviation: return its square",
+                "var_a + var_b": "if variances added up, two rulers would be worse than one",
+                "(var_a + var_b) / 2": "halfway between, two rulers would be worse than the better "
+                "one",
+                "(var_a + var_b) / 4": "that variance belongs to the plain average, and yours is "
+                "better",
+                "min(var_a, var_b)": "two rulers are better than the better one alone",
+                "1 / var_a + 1 / var_b": "this is the sum of the two precisions: take 1 over it",
+                "combine(a, var_a, b, var_b)[1]**0.5": "that is the standard deviation: square it",
             },
         ),
     ),
@@ -90,16 +86,14 @@ def _tell_blind(found, wanted, x, P, *_):
     wrong={
         "x + u": "the estimate is the prediction alone: the sighting changes nothing",
         "z": "the estimate is the sighting alone: what was known before is thrown away",
-        "turn(x, P, 0, z, Q, R)[0]": "you forget the step u: the robot has walked since the last "
-        "look",
-        "turn(x, P, -u, z, Q, R)[0]": "you subtract the step: add it, since u is negative when the "
-        "ball comes nearer",
-        "turn(x, P, u, z, 0, R)[0]": "the gain is made of the old variance P: predicting has added "
-        "Q to it",
+        "turn(x, P, 0, z, Q, R)[0]": "you forget the step u: the robot has walked since then",
+        "turn(x, P, -u, z, Q, R)[0]": "you subtract u: add it, it is negative when the ball comes "
+        "nearer",
+        "turn(x, P, u, z, 0, R)[0]": "your gain uses the old variance P: predicting has added Q",
         "x + u + R / (P + Q + R) * (z - x - u)": "your gain is the trust in the prediction: it "
         "should be near 1 when the sighting is good",
-        "x + u - (P + Q) / (P + Q + R) * (z - x - u)": "the correction leads away from the "
-        "sighting: look at its sign",
+        "x + u - (P + Q) / (P + Q + R) * (z - x - u)": "it leads away from the sighting: check the "
+        "sign",
         "x + u + (P + Q) / (P + Q + R) * (z - x)": "the innovation is the sighting minus the "
         "prediction, not minus the old estimate",
     },
@@ -107,13 +101,11 @@ def _tell_blind(found, wanted, x, P, *_):
         Part(
             of="variance",
             wrong={
-                "P + Q": "the estimate is right; but its variance is that of the prediction, as if "
-                "nothing had been seen",
-                "P": "the estimate is right; but its variance never changes",
-                "(P + Q)**2 / (P + Q + R)": "the estimate is right; but K times the variance is "
-                "what you gain: what is left is 1 - K of it",
-                "P * R / (P + Q + R)": "the estimate is right; but the share 1 - K is taken of the "
-                "old variance, not of the predicted one",
+                "P + Q": "its variance is that of the prediction, as if nothing had been seen",
+                "P": "its variance never changes",
+                "(P + Q)**2 / (P + Q + R)": "K times the variance is what you gain: what is left "
+                "is 1 - K of it",
+                "P * R / (P + Q + R)": "take 1 - K of the predicted variance, not of the old one",
             },
         ),
         Part(
@@ -146,13 +138,12 @@ def _innovations(rng: np.random.Generator) -> list[tuple[Any, ...]]:
     "The inverse stands between v and v: v @ np.linalg.inv(S) @ v.",
     cases=_innovations,
     wrong={
-        "innovation @ innovation": "you never use S: a surprise of 50 mm is much for one filter "
-        "and little for another",
-        "innovation @ S @ innovation": "you multiply by S: an innovation should count for less "
-        "where S is large, so divide",
+        "innovation @ innovation": "you never use S: 50 mm may be much for one filter and little "
+        "for another",
+        "innovation @ S @ innovation": "you multiply by S: where S is large it should count for "
+        "less",
         "nis(innovation, S)**0.5": "that is the square root of it: the S in NIS stands for squared",
-        "(innovation**2 / np.diag(S)).sum()": "you use the diagonal of S alone: it also says which "
-        "surprises come together",
+        "(innovation**2 / np.diag(S)).sum()": "you use only the diagonal of S: the rest counts too",
         "nis(innovation, S) / len(innovation)": "that is the NIS for each measurement: leave the "
         "division out, the test knows how many there are",
     },

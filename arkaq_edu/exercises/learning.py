@@ -25,10 +25,9 @@ PULLS = 2000
         (rng.uniform(0.5, 9, 6).round(1), 6),
     ],
     wrong={
-        "rewards[:h + 1].sum()": "you add h + 1 rewards: the first is at t = 0, so the last of h "
-        "is at t = h - 1",
-        "rewards[1:h + 1].sum()": "you leave out the immediate reward, t = 0, and add one that "
-        "comes too late",
+        "rewards[:h + 1].sum()": "you add h + 1 rewards: the last of h is at t = h - 1",
+        "rewards[1:h + 1].sum()": "you leave out the reward at t = 0, and add one that comes too "
+        "late",
         "rewards[1:h].sum()": "you leave out the immediate reward: the sum begins at t = 0",
         "rewards[:h - 1].sum()": "you add h - 1 rewards: the last one counts too",
         "rewards.sum()": "you add all the rewards: only the first h of them count",
@@ -54,26 +53,21 @@ def finite_sum(rewards, h):
         (rng.uniform(0.5, 9, 8).round(1), float(rng.uniform(0.3, 0.95))) for _ in range(20)
     ],
     wrong={
-        "rewards.sum()": "you never use gamma: a reward t steps away counts gamma to the power of "
-        "t",
-        "gamma * rewards.sum()": "all your rewards count alike: a reward t steps away counts gamma "
-        "to the power of t",
+        "rewards.sum()": "you never use gamma: a reward t steps away counts gamma to the t",
+        "gamma * rewards.sum()": "all your rewards count alike: at t they count gamma to the t",
         "gamma * discounted_sum(rewards, gamma)": "you discount the first reward too: it is earned "
         "now, at t = 0, and counts in full",
-        "discounted_sum(rewards[::-1], gamma)": "your order is reversed: the last reward is the "
-        "one that counts least",
+        "discounted_sum(rewards[::-1], gamma)": "your order is reversed: the last counts least",
         "discounted_sum(rewards, 1 - gamma)": "you use powers of 1 - gamma: a gamma near 1 should "
         "make the future count",
         "rewards[0] + gamma * rewards[1:].sum()": "all the later rewards count alike: each step "
         "away costs another factor of gamma",
-        "discounted_sum(rewards, 1 / gamma)": "your later rewards count more: multiply by gamma, "
-        "do not divide",
-        "rewards @ (gamma * np.arange(len(rewards)))": "you multiply by gamma times t: it is gamma "
-        "to the power of t",
-        "(1 - gamma) * discounted_sum(rewards, gamma)": "you multiply the sum by 1 - gamma, to "
-        "compare it with a reward per step: leave that out",
-        "rewards * gamma**np.arange(len(rewards))": "each reward is discounted as it should be: "
-        "now add them up",
+        "discounted_sum(rewards, 1 / gamma)": "later rewards count more: multiply, do not divide",
+        "rewards @ (gamma * np.arange(len(rewards)))": "you use gamma times t: it is gamma to the "
+        "t",
+        "(1 - gamma) * discounted_sum(rewards, gamma)": "you multiply by 1 - gamma, as for a "
+        "reward per step: leave that out",
+        "rewards * gamma**np.arange(len(rewards))": "each reward is right: now add them up",
     },
 )
 def discounted_sum(rewards, gamma):
@@ -221,22 +215,19 @@ def _pulls(rng: np.random.Generator) -> list[tuple[Any, ...]]:
     cases=_pulls,
     wrong={
         "p.max() - p[arms]": "that is the loss of each pull by itself: add up what was lost so far",
-        "regret(p, arms)[-1]": "that is the regret after the last pull: return the regret after "
-        "each of them",
-        "-regret(p, arms)": "your regret is negative: it is what the best would have paid, minus "
-        "what yours pay",
+        "regret(p, arms)[-1]": "that is only the regret after the last pull: return all of them",
+        "-regret(p, arms)": "your regret is negative: subtract what yours pay from the best",
         "np.cumsum(p.mean() - p[arms])": "you compare with the mean of the machines: regret "
         "compares with the best of them",
         "np.cumsum(p[arms].max() - p[arms])": "you compare with the best machine that was pulled: "
         "regret compares with the best there is",
         "np.cumsum(np.maximum.accumulate(p[arms]) - p[arms])": "you compare with the best machine "
         "so far: regret compares with the best there is",
-        "np.cumsum(1 - p[arms])": "you compare with a coin at every pull: not even the best "
-        "machine pays that",
-        "np.cumsum(p[arms])": "that is what was earned: regret is what the best machine would have "
-        "paid beyond it",
-        "regret(p, arms) / np.arange(1, len(arms) + 1)": "that is the average regret of a pull: "
-        "add up, and do not divide",
+        "np.cumsum(1 - p[arms])": "you compare with a coin at every pull: no machine pays that",
+        "np.cumsum(p[arms])": "that is what was earned: regret is what the best would have paid "
+        "beyond it",
+        "regret(p, arms) / np.arange(1, len(arms) + 1)": "that is the average regret: do not "
+        "divide",
     },
 )
 def regret(p, arms):

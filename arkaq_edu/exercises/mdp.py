@@ -51,16 +51,13 @@ def _models(rng: np.random.Generator) -> list[tuple[Any, ...]]:
         "gamma times as much",
         "R[s].max() + gamma * (T[:, s] @ V).max()": "you take two maxima: but one and the same "
         "action earns the reward and leads on",
-        "_q(T, R, gamma, V)[s].mean()": "you take the mean over the actions: the robot may choose "
-        "the best",
-        "_q(T, R, gamma, V)[s].sum()": "you add the actions up: the robot takes one of them, the "
-        "best",
+        "_q(T, R, gamma, V)[s].mean()": "you take the mean over the actions: take the best",
+        "_q(T, R, gamma, V)[s].sum()": "you add the actions up: the robot takes only one",
         "_q(T, R, gamma, V)[s].min()": "that is the worst action: take the best",
-        "_q(T, R, gamma, V)[s].argmax()": "that is which action is best: return how much it is "
-        "worth",
+        "_q(T, R, gamma, V)[s].argmax()": "that is the best action: return how much it is worth",
         "_q(T, R, gamma, V)[s]": "those are the values of all actions: take the best of them",
-        "(R[s] + gamma * V.max()).max()": "you hope for the best state to follow: T says how "
-        "likely each is",
+        "(R[s] + gamma * V.max()).max()": "you hope for the best next state: T says how likely "
+        "each is",
         "(R[s] + gamma * V.sum()).max()": "the values that may follow are added up: each counts by "
         "its probability in T",
         "bellman(T.transpose(0, 2, 1), R, gamma, V, s)": "you sum over the states before: T[a, s] "
@@ -83,12 +80,10 @@ def bellman(T, R, gamma, V, s):
     returns="the number of an action for each state",
     cases=_models,
     wrong={
-        "R.argmax(axis=1)": "those are the actions of equation 2.6, best for the immediate reward: "
-        "V is never used",
-        "(T @ V).T.argmax(axis=1)": "those lead to the best states, whatever they cost: the reward "
-        "is missing",
-        "_q(T, R, gamma, V).max(axis=1)": "those are the values of the best actions: return their "
-        "indices",
+        "R.argmax(axis=1)": "those are best for the immediate reward, equation 2.6: V is never "
+        "used",
+        "(T @ V).T.argmax(axis=1)": "those lead to the best states: the reward is missing",
+        "_q(T, R, gamma, V).max(axis=1)": "those are the values of the best: return their indices",
         "_q(T, R, gamma, V)": "those are the values of all actions: which of a row is the largest?",
         "_q(T, R, gamma, V).argmin(axis=1)": "those are the worst actions",
         "_q(T, R, gamma, V).argmax(axis=0)": "that is the best state of each action: return the "
@@ -130,15 +125,13 @@ def _steps(ended: bool) -> Cases:
         "counts is the difference between them",
         "td(v, r, v_next, ended, alpha, 1.0)": "what follows is not discounted: a step later it is "
         "worth gamma times as much",
-        "td(v, r, 0.0, ended, alpha, gamma)": "only the reward counts for you: add what the next "
-        "state is worth",
+        "td(v, r, 0.0, ended, alpha, gamma)": "only the reward counts: the next value is missing",
         "td(v, 0.0, v_next, ended, alpha, gamma)": "the reward is missing from the target",
         "td(v, gamma * r, v_next, ended, alpha, gamma)": "the reward is discounted too: multiply "
         "by gamma only what comes a step later",
         "td(v, r, v_next, ended, 1 - alpha, gamma)": "alpha and 1 - alpha have changed places: "
         "alpha is the weight of what is new",
-        "td(v, r, v_next, ended, -alpha, gamma)": "the value moves away from the target: look at "
-        "the sign",
+        "td(v, r, v_next, ended, -alpha, gamma)": "it moves away from the target: check the sign",
     },
     then=(
         Part(
@@ -147,8 +140,7 @@ def _steps(ended: bool) -> Cases:
                 "td(v, r, v_next, False, alpha, gamma)": "where the episode has ended nothing "
                 "follows: leave the next value out of the target there",
                 "v": "where the episode has ended you learn nothing: but the reward was real",
-                "r": "where the episode has ended, too, go only a step of size alpha toward the "
-                "target",
+                "r": "where the episode has ended, too, go only a step of size alpha",
             },
         ),
     ),

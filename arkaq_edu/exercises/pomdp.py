@@ -36,8 +36,7 @@ def _plans_of_two_steps(rng: np.random.Generator) -> list[tuple[Any, ...]]:
         "the first action's reward is missing",
         "two_steps(T_a, O_a, R, 1.0, a, after)": "all is there but the discount: what is earned "
         "later is multiplied by gamma",
-        "gamma * two_steps(T_a, O_a, R, 1.0, a, after)": "discount only what comes later, not the "
-        "first reward",
+        "gamma * two_steps(T_a, O_a, R, 1.0, a, after)": "discount only what comes later",
         "two_steps(np.eye(len(R)), O_a, R, gamma, a, after)": "the state has not moved: T says "
         "where the first action leads, and there the rest begins",
         "two_steps(T_a.T, O_a, R, gamma, a, after)": "you go backwards through T: T_a[s, t] leads "
@@ -84,23 +83,20 @@ def _plans(rng: np.random.Generator) -> list[tuple[Any, ...]]:
         "alphas.max(axis=0) @ b": "you take the best plan for each state, as if the robot saw the "
         "state: it needs one plan for all of them",
         "alphas[:, b.argmax()].max()": "you treat the likeliest state as certain",
-        "alphas.max()": "that is the best that could happen: multiply each state by the belief in "
-        "it",
+        "alphas.max()": "that is the best that could happen: multiply each state by its belief",
         "(alphas @ b).mean()": "that is the mean over the plans: the robot may choose",
-        "alphas.mean(axis=1).max()": "you treat all states alike: multiply each by the belief in "
-        "it",
+        "alphas.mean(axis=1).max()": "you treat all states alike: multiply each by its belief",
         "actions[(alphas @ b).argmax()]": "the value comes first, the action second",
     },
     then=(
         Part(
             of="action",
             wrong={
-                "(alphas @ b).argmax()": "the value is right; but you return the number of the "
-                "plan: its action is in `actions`",
-                "actions[alphas[:, b.argmax()].argmax()]": "the value is right; but that is the "
-                "action for the likeliest state",
-                "actions.max()": "the value is right; but the action is the greatest number in "
-                "`actions`: take that of the best plan",
+                "(alphas @ b).argmax()": "that is the number of the plan: its action is in "
+                "`actions`",
+                "actions[alphas[:, b.argmax()].argmax()]": "that is for the likeliest state alone",
+                "actions.max()": "that is the greatest number in `actions`: take that of the best "
+                "plan",
             },
         ),
     ),
@@ -134,8 +130,7 @@ def _how_much(function: Callable[..., Any], *case: Any) -> Any:
     cases=_rivals,
     answer=_how_much,
     wrong={
-        "-lead(b, alpha, others)": "the sign is the wrong way round: a plan that is ahead has a "
-        "lead above 0",
+        "-lead(b, alpha, others)": "the sign is wrong: a plan that is ahead has a lead above 0",
         "b @ alpha - (others @ b).min()": "you compare with the worst of the others: to be needed "
         "the plan must beat the best of them",
         "b @ alpha - (others @ b).mean()": "you compare with the mean of the others: to be needed "
@@ -144,8 +139,8 @@ def _how_much(function: Callable[..., Any], *case: Any) -> Any:
         "plan earns at the belief, then the best of them",
         "(alpha - others).min()": "the belief is never used: compute the lead at this belief",
         "b @ alpha": "that is what the plan earns: subtract what the best of the others earns",
-        "(others @ b).max()": "that is what the best of the others earns: how far is the plan "
-        "ahead of it?",
+        "(others @ b).max()": "that is what the best of the others earns: how far ahead is the "
+        "plan?",
     },
 )
 def lead(b, alpha, others):

@@ -46,8 +46,7 @@ def _tell_scale(name: str, unit: str, place: int) -> Callable[..., str]:
         Part(
             of="orientation",
             wrong={
-                "-2 * orientation": "the sign of the orientation has changed: left is positive, "
-                "before and after",
+                "-2 * orientation": "the orientation has changed its sign: left stays positive",
             },
             tell=_tell_scale("orientation", "rad", 1),
         ),
@@ -78,8 +77,7 @@ def _tell_nearest(found, wanted, pattern, centers):
     cases=lambda rng: [(rng.uniform(-1, 1, 2), rng.uniform(-1, 1, (n, 2))) for n in range(1, 41)],
     answer=index("center", lambda x, m: len(m), "which one it is, not how far or where"),
     wrong={
-        "np.linalg.norm(centers - pattern, axis=1).argmax()": "you found the farthest center of "
-        "all",
+        "np.linalg.norm(centers - pattern, axis=1).argmax()": "you found the farthest center",
         "np.abs(centers - pattern)[:, 0].argmin()": "you compare the first coordinate alone: a "
         "center may be right in distance and far off in orientation",
         "np.abs(centers - pattern)[:, 1].argmin()": "you compare the second coordinate alone: a "

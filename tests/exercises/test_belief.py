@@ -82,7 +82,7 @@ WRONG = [
     (exercises.correct, lambda b, seen: (b + seen) / 2, "take the mean"),
     (exercises.correct, lambda b, seen: normed(b * b * seen), "belief is counted twice"),
     (exercises.correct, lambda b, seen: normed(b * seen**2), "observation is counted twice"),
-    (exercises.correct, lambda b, seen: normed(b * (1 - seen)), "not observed"),
+    (exercises.correct, lambda b, seen: normed(b * (1 - seen)), "not seen"),
     (exercises.correct, lambda b, seen: normed(b / seen), "divide by the likelihood"),
     (exercises.correct, lambda b, seen: 1.0 * (b * seen == max(b * seen)), "forget the others"),
     (exercises.correct, lambda b, seen: (b * seen).sum(), r"\d numbers, not one number"),

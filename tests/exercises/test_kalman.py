@@ -77,7 +77,7 @@ WRONG = [
     (exercises.combine, mean_of(lambda a, va, b, vb: a if va < vb else b), "throw the other away"),
     (exercises.combine, mean_of(lambda a, va, b, vb: combine(a, va, b, vb)[0] + 1), "too large"),
     (exercises.combine, mean_of(lambda a, va, b, vb: combine(a, va, b, vb)[0] - 1), "too small"),
-    (exercises.combine, variance_of(lambda a, va, b, vb: va + vb), "add up"),
+    (exercises.combine, variance_of(lambda a, va, b, vb: va + vb), "added up"),
     (exercises.combine, variance_of(lambda a, va, b, vb: (va + vb) / 2), "halfway"),
     (exercises.combine, variance_of(lambda a, va, b, vb: (va + vb) / 4), "plain average"),
     (exercises.combine, variance_of(lambda a, va, b, vb: min(va, vb)), "better one alone"),

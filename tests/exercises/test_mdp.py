@@ -87,7 +87,7 @@ WRONG = [
     (exercises.bellman, lambda T, R, g, V, s: min(q(T, R, g, V)[s]), "worst action"),
     (exercises.bellman, lambda T, R, g, V, s: np.argmax(q(T, R, g, V)[s]), "how much it is worth"),
     (exercises.bellman, lambda T, R, g, V, s: q(T, R, g, V)[s], "take the best of them"),
-    (exercises.bellman, lambda T, R, g, V, s: max(R[s]) + g * max(V), "hope for the best state"),
+    (exercises.bellman, lambda T, R, g, V, s: max(R[s]) + g * max(V), "the best next state"),
     (exercises.bellman, lambda T, R, g, V, s: max(R[s]) + g * sum(V), "values that may follow"),
     (
         exercises.bellman,

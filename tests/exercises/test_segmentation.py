@@ -78,7 +78,7 @@ def first_hundred(x, m, rho, eta):
 
 WRONG = [
     (exercises.scale, lambda d, o: (2 * o, (d - 2150) / 1950), "wrong order"),
-    (exercises.scale, lambda d, o: ((d - 2150) / 1950, -2 * o), "left is positive"),
+    (exercises.scale, lambda d, o: ((d - 2150) / 1950, -2 * o), "left stays positive"),
     (exercises.scale, lambda d, o: ((d - 2150) / 1950, o), r"orientation 0.5 rad should become 1"),
     (exercises.scale, lambda d, o: ((d - 200) / 3900, 2 * o), r"distance 200 mm should become -1"),
     (exercises.scale, lambda d, o: (((d - 2150) / 1950) ** 3, 2 * o), "straight"),
