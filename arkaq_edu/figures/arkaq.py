@@ -1,8 +1,8 @@
-"""Figures 3.1 and 3.2: the ARKAQ agent in two layers, and in detail.
+"""The ARKAQ agent: its parts (figures 3.1, 3.2) and its automata (5.6, 5.15, 5.34, 5.38).
 
 References
 ----------
-Thesis, chapter 3 and figures 3.1 and 3.2.
+Thesis, chapter 3 and sections 5.2.1, 5.2.2, 5.3.1 and 5.3.2.
 
 Examples
 --------
@@ -15,26 +15,62 @@ from __future__ import annotations
 
 from matplotlib.axes import Axes
 
+from arkaq_edu.arkaq import GOAL_Q_LEARNING, GOAL_SEGMENTATION, Q_LEARNING, SEGMENTATION, Automaton
+from arkaq_edu.arkaq.automata import DONE
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.figures.drawing.diagram import Diagram, blank, box, frame, wire, words
+from arkaq_edu.figures.drawing.automaton import plot_automaton
+from arkaq_edu.figures.drawing.diagram import Place, blank, box, frame, wire, words
+from arkaq_edu.figures.drawing.plot import Plot
+
+# The centers of the states, chosen by hand so that no two arrows cross.
+SEGMENTATION_PLACES = {
+    "supervisor": (0.0, 1.0),
+    "observe": (4.0, 1.0),
+    "unknown": (2.0, 2.0),
+    "network": (4.0, -1.0),
+    "act": (0.0, -1.0),
+    DONE: (0.0, 2.4),
+}
+Q_LEARNING_PLACES = {
+    "supervisor": (0.0, -1.2),
+    "identify": (1.4, 1.0),
+    "explore": (4.1, 1.8),
+    "exploit": (4.1, 0.4),
+    "act": (6.8, 1.1),
+    "evaluate": (5.0, -1.2),
+    DONE: (0.0, 1.9),
+}
+GOAL_SEGMENTATION_PLACES = {
+    "turn" if state == "act" else state: place for state, place in SEGMENTATION_PLACES.items()
+}
+GOAL_Q_LEARNING_PLACES = {
+    "supervisor": (0.0, -1.2),
+    "identify": (1.3, 0.7),
+    "explore": (3.95, 1.6),
+    "exploit": (3.95, 0.4),
+    "act": (6.8, 0.4),
+    "judge": (6.8, -1.2),
+    "evaluate": (3.6, -1.2),
+    DONE: (0.0, 1.9),
+}
 
 
-def figure_3_1(ax: Axes | None = None) -> Diagram:
+def figure_3_1(ax: Axes | None = None) -> Plot:
     """Draw figure 3.1, the two layers of ARKAQ.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw. The default is new axes.
 
     Returns
     -------
-    Diagram
-        ``ax``, ``parts`` and ``wires``.
+    Plot
+        ``parts``, the boxes by name, and ``wires``, the arrows by (from, to).
 
     Notes
     -----
-    The thesis's network is called ART2 there; the one that its agent runs is the Euclidean one.
+    The thesis calls the network ART2 here. The one its agent runs is the Euclidean one.
 
     References
     ----------
@@ -73,27 +109,27 @@ def figure_3_1(ax: Axes | None = None) -> Diagram:
         words(ax, place, text)
     words(ax, (2.5, 3.85), "world model generator", "left", style.QUIET)
     words(ax, (2.5, 1.4), "policy generator", "left", style.QUIET)
-    return Diagram(ax, parts, wires)
+    return Plot(ax, parts=parts, wires=wires)
 
 
-def figure_3_2(ax: Axes | None = None) -> Diagram:
-    """Draw figure 3.2, ARKAQ in detail: what goes from part to part.
+def figure_3_2(ax: Axes | None = None) -> Plot:
+    """Draw figure 3.2, ARKAQ in detail: what each part passes to the next.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw. The default is new axes.
 
     Returns
     -------
-    Diagram
-        ``ax``, ``parts`` and ``wires``.
+    Plot
+        ``parts``, the boxes by name, and ``wires``, the arrows by (from, to).
 
     References
     ----------
     Thesis, chapter 3, figure 3.2; equations 2.12 (the table), 2.55-2.59 (the filter), 3.2 (the
-    choice) and 4.4-4.6 (the network). The wire of the action back to the filter, its B u, is the
-    course's own.
+    choice) and 4.4-4.6 (the network). The arrow from the action back to the filter (its B u) is
+    an addition of the course.
 
     Examples
     --------
@@ -144,4 +180,33 @@ def figure_3_2(ax: Axes | None = None) -> Diagram:
         (1.9, -0.3, "Q-learning"),
     ):
         words(ax, (x, y), text, "left", style.QUIET)
-    return Diagram(ax, parts, wires)
+    return Plot(ax, parts=parts, wires=wires)
+
+
+def figure_5_6(ax: Axes | None = None) -> Plot:
+    """Draw figure 5.6, the automaton of the segmentation; see `plot_automaton`."""
+    return _automaton("segmentation", SEGMENTATION, SEGMENTATION_PLACES, ax)
+
+
+def figure_5_15(ax: Axes | None = None) -> Plot:
+    """Draw figure 5.15, the automaton of exploration and exploitation; see `plot_automaton`."""
+    return _automaton("Q-learning", Q_LEARNING, Q_LEARNING_PLACES, ax)
+
+
+def figure_5_34(ax: Axes | None = None) -> Plot:
+    """Draw figure 5.34, the automaton of the goal's segmentation; see `plot_automaton`."""
+    return _automaton("segmentation", GOAL_SEGMENTATION, GOAL_SEGMENTATION_PLACES, ax)
+
+
+def figure_5_38(ax: Axes | None = None) -> Plot:
+    """Draw figure 5.38, the automaton of the goal's Q-learning; see `plot_automaton`.
+
+    The caption in the thesis says "segmentation".
+    """
+    return _automaton("Q-learning", GOAL_Q_LEARNING, GOAL_Q_LEARNING_PLACES, ax)
+
+
+def _automaton(name: str, automaton: Automaton, places: dict[str, Place], ax: Axes | None) -> Plot:
+    size = f"{len(automaton.states)} states and {len(automaton.table)} transitions"
+    title = f"{name}: {size}, from the table that the agent runs"
+    return plot_automaton(automaton, places, ax, title=title)

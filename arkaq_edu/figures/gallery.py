@@ -17,7 +17,6 @@ from matplotlib.figure import Figure
 from arkaq_edu.figures import (
     arkaq,
     art,
-    automata,
     belief,
     distance,
     field,
@@ -39,7 +38,6 @@ _ROOMS = (
     kalman,
     distance,
     field,
-    automata,
     segmentation,
     policy,
     trajectories,

@@ -10,17 +10,16 @@ import pandas as pd
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from matplotlib.patches import FancyBboxPatch
 from matplotlib.path import Path as Polygon
 from PIL import Image
 from scipy import stats
 
-from arkaq_edu.arkaq import Q_LEARNING, SEGMENTATION, Arkaq, TrainingSettings
+from arkaq_edu.arkaq import Arkaq, TrainingSettings
 from arkaq_edu.experiments import STARTS, Walk, load_agent, walk
 from arkaq_edu.field import Camera, Legs, World
 from arkaq_edu.field.camera import FIELD_OF_VIEW
 from arkaq_edu.field.view import EXTENT
-from arkaq_edu.figures import FIGURES, automata, draw, field, policy, trajectories
+from arkaq_edu.figures import FIGURES, draw, field, policy, trajectories
 from arkaq_edu.figures.drawing import animation, style
 
 BALL_PROBLEM = ["5.3", "5.5", "5.6", "5.7", "5.8", *(f"5.{n}" for n in range(10, 31))]
@@ -160,55 +159,6 @@ def test_eq_5_1_is_even_in_depth_and_the_other_on_the_field():
     squares = (np.array(plot.area.get_data()) ** 2).sum(axis=0)
     uniform = stats.uniform(200**2, 4100**2 - 200**2)
     assert stats.kstest(squares, uniform.cdf).pvalue > 0.01
-
-
-# The automata: 5.6, 5.15
-
-DRAWN = [(automata.figure_5_6, SEGMENTATION), (automata.figure_5_15, Q_LEARNING)]
-
-
-@pytest.mark.parametrize(("figure", "table"), DRAWN)
-def test_every_state_and_transition_of_the_table_is_drawn(figure, table):
-    plot = figure(fresh_axes())
-    assert set(plot.states) == {*table.states, "done"}
-    assert set(plot.transitions) == set(table.table)
-    shown = {text.get_text() for text in plot.ax.texts}
-    assert set(plot.states) <= shown
-    for (state, event), then in table.table.items():
-        arrow, label = plot.transitions[state, event]
-        assert event in label.get_text().split("\nor ") and label in plot.ax.texts
-        assert arrow in plot.ax.patches
-        # It leaves the rim of one state's box and points at the rim of the other's.
-        for place, name in zip(arrow._posA_posB, (state, then), strict=True):
-            x, y = np.abs(np.subtract(place, plot.states[name].get_position()))
-            assert max(x / 0.65, y / 0.21) == pytest.approx(1)
-
-
-@pytest.mark.parametrize(("figure", "table"), DRAWN)
-def test_no_word_covers_another_and_no_arrows_cross(figure, table):
-    plot = figure(fresh_axes())
-    plot.ax.figure.canvas.draw()
-    labels = {label: arrow for arrow, label in plot.transitions.values()}
-    words = [label.get_window_extent() for label in labels]
-    boxes = [p.get_window_extent() for p in plot.ax.patches if isinstance(p, FancyBboxPatch)]
-    for one, other in [*itertools.combinations(words, 2), *itertools.product(words, boxes)]:
-        assert not one.overlaps(other)
-    for name, text in plot.states.items():
-        x0, y0, x1, y1 = text.get_window_extent().extents
-        assert any(b.x0 < x0 and x1 < b.x1 and b.y0 < y0 and y1 < b.y1 for b in boxes), name
-    lines = [np.array(arrow._posA_posB) for arrow in labels.values()]
-    for (a, b), (c, d) in itertools.combinations(lines, 2):
-        assert not (turns(a, b, c) * turns(a, b, d) < 0 and turns(c, d, a) * turns(c, d, b) < 0)
-
-
-def turns(a, b, c):
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-
-
-def test_a_state_without_a_place_is_named():
-    places = {k: v for k, v in automata.SEGMENTATION_PLACES.items() if k != "act"}
-    with pytest.raises(ValueError, match="places must hold every state, got none for 'act'"):
-        automata.plot_automaton(SEGMENTATION, places, fresh_axes())
 
 
 # The policy: 5.16

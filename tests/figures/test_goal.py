@@ -10,11 +10,11 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from PIL import Image
 
-from arkaq_edu.arkaq import GOAL_Q_LEARNING, GOAL_SEGMENTATION, Arkaq
+from arkaq_edu.arkaq import Arkaq
 from arkaq_edu.art import EuclideanART
 from arkaq_edu.envs.score_goal import ACTIONS
 from arkaq_edu.experiments import goal, load_agent
-from arkaq_edu.figures import FIGURES, automata, policy
+from arkaq_edu.figures import FIGURES, policy
 from arkaq_edu.figures import goal as figures
 from arkaq_edu.figures.drawing import animation, style
 
@@ -41,31 +41,6 @@ def test_a_figure_draws_where_it_is_told_and_states_a_fact(number, monkeypatch):
     (left, _), (right, top) = ax.figure.bbox.get_points()
     title = ax._left_title.get_window_extent()
     assert left <= title.x0 and title.x1 <= right and title.y1 <= top
-
-
-@pytest.mark.parametrize(
-    ("number", "automaton"), [("5.34", GOAL_SEGMENTATION), ("5.38", GOAL_Q_LEARNING)]
-)
-def test_the_automata_are_drawn_as_they_run(number, automaton):
-    plot = FIGURES[number](fresh_axes())
-    assert set(plot.transitions) == set(automaton.table)
-    assert set(plot.states) == {*automaton.states, "done"}
-    for (_, event), (_, label) in plot.transitions.items():
-        assert event in label.get_text().split("\nor ")
-
-
-@pytest.mark.parametrize("number", ["5.34", "5.38"])
-def test_no_two_labels_of_an_automaton_overlap(number):
-    plot = FIGURES[number](fresh_axes())
-    plot.ax.figure.canvas.draw()
-    labels = {id(label): label for _, label in plot.transitions.values()}
-    boxes = [text.get_window_extent() for text in [*labels.values(), *plot.states.values()]]
-    for i, one in enumerate(boxes):
-        assert not any(one.overlaps(other) for other in boxes[i + 1 :])
-
-
-def test_the_shorter_name_of_a_place_is_only_renamed():
-    assert automata.GOAL_SEGMENTATION_PLACES["turn"] == automata.SEGMENTATION_PLACES["act"]
 
 
 @pytest.mark.parametrize("vigilance", [0.075, 0.06, 0.05, 0.3])
