@@ -160,7 +160,7 @@ def goals_seen():
 
 def test_the_goal_looks_the_same_without_numba():
     here = [str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")]
-    script = "import json; from tests.field import test_goal as t; print(json.dumps(t.goals_seen()))"
+    script = "import json; from tests.field.test_goal import *; print(json.dumps(goals_seen()))"
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, timeout=300,
         env=os.environ | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(here)},

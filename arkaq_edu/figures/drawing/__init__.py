@@ -1,1 +1,1 @@
-"""What all figures share: the visual grammar, diagrams, animations."""
+"""What all figures share: the plot they return, the visual grammar, diagrams, animations."""

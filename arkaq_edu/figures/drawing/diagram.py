@@ -1,18 +1,17 @@
-"""What the diagrams of the course are drawn of: boxes, nodes, words, and the wires between them.
+"""The parts of the diagrams: boxes, nodes, words, and the wires between them.
 
 Examples
 --------
 >>> from matplotlib.figure import Figure
 >>> ax = blank(Figure().subplots(), "a look becomes a step", (0, 4), (0, 1))
 >>> parts = {"look": box(ax, (1, 0.5), "look"), "step": box(ax, (3, 0.5), "step")}
->>> Diagram(ax, parts, {("look", "step"): wire(ax, (1.55, 0.5), (2.45, 0.5))})
+>>> Plot(ax, parts=parts, arrow=wire(ax, (1.55, 0.5), (2.45, 0.5)))
 a look becomes a step
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -23,39 +22,34 @@ from matplotlib.text import Text
 from numpy.typing import NDArray
 
 from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.drawing.plot import Plot
 
 Place = tuple[float, float]
 
+# How far circles, squares and diamonds reach from their center.
+_CIRCLE, _SQUARE, _DIAMOND = 0.34, 0.31, 0.42
 
-class Diagram(NamedTuple):
+
+class Diagram(Plot):
     """What a diagram is made of: its parts, and its wires by (from, to)."""
 
-    ax: Axes
-    parts: dict[str, Text]
-    wires: dict[tuple[str, str], FancyArrowPatch]
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return self.ax.get_title(loc="left")
+    def __init__(self, ax: Axes, parts: dict[str, Text], wires: dict) -> None:
+        super().__init__(ax, parts=parts, wires=wires)
 
 
 def blank(ax: Axes | None, title: str, xlim: Place, ylim: Place, inch: float = 0.75) -> Axes:
-    """Return axes of equal units without a frame.
+    """Return axes without a frame, with the same scale in both directions.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes or None
-        Axes to dress; fresh ones where it is None.
+        Axes to style; new ones if it is None.
     title : str
-        What the diagram states.
+        The fact that the diagram states.
     xlim, ylim : tuple of two float
         Ends of the axes.
     inch : float
-        How large a unit is on fresh axes.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
+        Size of a unit on new axes.
 
     Examples
     --------
@@ -73,7 +67,7 @@ def blank(ax: Axes | None, title: str, xlim: Place, ylim: Place, inch: float = 0
 
 
 def words(ax: Axes, place: Place, text: str, side: str = "center", color: str = style.INK) -> Text:
-    """Write words on white; `side`, "left", "center" or "right", is the side the place is on.
+    """Write words on white; the place is on their `side`: "left", "center" or "right".
 
     Examples
     --------
@@ -86,7 +80,7 @@ def words(ax: Axes, place: Place, text: str, side: str = "center", color: str = 
 
 
 def box(ax: Axes, place: Place, text: str = "", *, width: float = 1.1, height: float = 0.7) -> Text:
-    """Draw a rounded box around a place, with words in its middle.
+    """Draw a rounded box around a place, with a text in its middle.
 
     Examples
     --------
@@ -104,7 +98,7 @@ def box(ax: Axes, place: Place, text: str = "", *, width: float = 1.1, height: f
 
 
 def node(ax: Axes, place: Place, text: str) -> Text:
-    """Draw a circle of radius 0.34 with a symbol in it.
+    """Draw a circle with a symbol in it.
 
     Examples
     --------
@@ -112,14 +106,14 @@ def node(ax: Axes, place: Place, text: str) -> Text:
     >>> node(Figure().subplots(), (0, 0), "$s$").get_text()
     '$s$'
     """
-    ax.add_patch(Circle(place, 0.34, facecolor=style.CELLS[0], edgecolor=style.INK))
+    ax.add_patch(Circle(place, _CIRCLE, facecolor=style.CELLS[0], edgecolor=style.INK))
     return ax.text(*place, text, ha="center", va="center", fontsize=10, color=style.INK)
 
 
 def moment(ax: Axes, name: str, place: Place) -> Text:
-    """Draw a variable at a moment, such as "A_t+1": actions are squares, rewards diamonds.
+    """Draw a variable at a time step, such as "A_t+1".
 
-    All others (states, observations, beliefs) are circles.
+    Actions are squares, rewards diamonds, all others (states, observations, beliefs) circles.
 
     Examples
     --------
@@ -131,7 +125,7 @@ def moment(ax: Axes, name: str, place: Place) -> Text:
     text = f"${letter}_{{{index}}}$"
     if letter not in "AR":
         return node(ax, place, text)
-    radius, turned = (0.31 * np.sqrt(2), np.pi / 4) if letter == "A" else (0.42, 0)
+    radius, turned = (_SQUARE * np.sqrt(2), np.pi / 4) if letter == "A" else (_DIAMOND, 0)
     look = {"facecolor": style.CELLS[0], "edgecolor": style.INK}
     ax.add_patch(RegularPolygon(place, 4, radius=radius, orientation=turned, **look))
     return ax.text(*place, text, ha="center", va="center", fontsize=10, color=style.INK)
@@ -154,16 +148,16 @@ def link(ax: Axes, places: Mapping[str, Place], start: str, end: str) -> FancyAr
 
 
 def _rim(name: str, along: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return how far a moment reaches in a direction of length 1."""
+    """Return the way from the center of a `moment` to its rim, in a direction of length 1."""
     if name[0] == "A":
-        return 0.31 * along / np.abs(along).max()
+        return _SQUARE * along / np.abs(along).max()
     if name[0] == "R":
-        return 0.42 * along / np.abs(along).sum()
-    return 0.34 * along
+        return _DIAMOND * along / np.abs(along).sum()
+    return _CIRCLE * along
 
 
 def frame(ax: Axes, corner: Place, width: float, height: float) -> Rectangle:
-    """Draw a dashed frame from its lower left corner.
+    """Draw a dashed frame, given its lower left corner.
 
     Examples
     --------
@@ -187,13 +181,9 @@ def wire(ax: Axes, *corners: Place, sign: str = "", norm: bool = False) -> Fancy
     *corners : tuple of two float
         From the first to the last.
     sign : str
-        What stands at its end.
+        A sign to write beside its end.
     norm : bool
-        Whether a dot stands on its last piece, as where a network divides by a norm.
-
-    Returns
-    -------
-    matplotlib.patches.FancyArrowPatch
+        Whether to put a dot on its last piece, which marks a division by a norm.
 
     Examples
     --------
@@ -210,8 +200,7 @@ def wire(ax: Axes, *corners: Place, sign: str = "", norm: bool = False) -> Fancy
     ax.add_patch(arrow)
     (x, y), (end_x, end_y) = corners[-2:]
     if sign:
-        length = np.hypot(end_x - x, end_y - y)
-        along = np.array([end_x - x, end_y - y]) / length
+        along = np.array([end_x - x, end_y - y]) / np.hypot(end_x - x, end_y - y)
         beside = 0.22 * np.array([-along[1], along[0]]) * (1 if along[0] >= 0 else -1)
         x, y = np.array([end_x, end_y]) - 0.4 * along + beside
         ax.text(x, y, sign, ha="center", va="center", fontsize=10, color=style.INK)

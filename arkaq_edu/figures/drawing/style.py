@@ -1,22 +1,19 @@
-"""The one visual grammar: every figure and every widget of the course speaks it.
+"""The visual grammar that all figures and widgets share.
 
-- An action has one color, everywhere (`ACTIONS`).
-- Hollow marks are measurements, or numbers somebody printed; filled marks are our own.
+- Each action has one color everywhere (`ACTIONS`).
+- Hollow marks are measurements, or numbers that the thesis prints. Filled marks are our own.
 - A band is one standard deviation to each side.
-- Cells of a partition get soft colors, and two neighbors never the same one (`CELLS`).
-- In the robot's view the ball's orientation runs across, left of the robot on the left, and its
-  distance upward, with the robot at the foot of the picture.
+- Cells of a partition have soft colors, and no two neighbors the same one (`CELLS`).
+- In the robot's view the ball's orientation runs across, with the robot's left on the left. The
+  distance runs upward, with the robot at the bottom.
 
-Colors that meet in one picture differ in lightness too, so that a gray print and a color-blind
-reader lose nothing.
+Colors that meet in one picture also differ in lightness. So they can be told apart in a gray print
+and by a color-blind reader.
 
 Examples
 --------
->>> import numpy as np
 >>> from matplotlib.figure import Figure
->>> ax = Figure().subplots()
->>> marks = measurements([0, 1, 2], [1.0, 1.2, 0.9], ax)
->>> marks.get_markerfacecolor()
+>>> measurements([0, 1, 2], [1.0, 1.2, 0.9], Figure().subplots()).get_markerfacecolor()
 'none'
 """
 
@@ -34,32 +31,28 @@ from numpy.typing import ArrayLike, NDArray
 
 INK = "#222222"
 QUIET = "#6b6b6b"
-OURS = "#8a2f74"  # what we computed, where no action gives it a color
+OURS = "#8a2f74"  # what we computed, unless it has the color of an action
 ACTIONS = {"forward": "#16324f", "left": "#c8501e", "right": "#5aaadf", "kick": "#f4d24a"}
-# From light to dark; found by a search for six soft colors that stay apart for every kind of
+# From light to dark. A search found these six soft colors: they stay distinct for every kind of
 # color vision.
 CELLS = ("#d6f4f4", "#e1e5cf", "#a4e2f7", "#dccda4", "#a5cacc", "#afbda8")
 
-# What the camera can show: half its width is 0.4965 rad; the thesis gives 0.5 rad, 200 to 4100 mm.
+# The camera shows .4965 rad to each side; the thesis gives .5 rad, and 200 to 4,100 mm.
 VIEW_ORIENTATION = (0.5, -0.5)
 VIEW_DISTANCE = (0.0, 4500.0)
 
 
 def axes(ax: Axes | None = None, *, xlabel: str = "", ylabel: str = "", title: str = "") -> Axes:
-    """Return axes in the house style: `ax` itself, or fresh ones where it is None.
+    """Return axes in the house style: `ax` itself, or new ones if it is None.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
-        Axes to dress.
+        Axes to style.
     xlabel, ylabel : str
-        What runs along the axes, with its unit.
+        The quantity along each axis, with its unit.
     title : str
-        What the picture states.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
+        The fact that the picture states.
 
     Examples
     --------
@@ -77,49 +70,31 @@ def axes(ax: Axes | None = None, *, xlabel: str = "", ylabel: str = "", title: s
 
 
 def view_axes(ax: Axes | None = None, *, title: str = "") -> Axes:
-    """Return axes of the robot's view: orientation (rad, left on the left) by distance (mm).
-
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes, optional
-        Axes to dress; fresh ones where it is None.
-    title : str
-        What the picture states.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
+    """Return `axes` of the robot's view: orientation (rad, left on the left) by distance (mm).
 
     Examples
     --------
     >>> from matplotlib.figure import Figure
-    >>> ax = view_axes(Figure().subplots())
-    >>> [float(end) for end in ax.get_xlim()]
+    >>> [float(end) for end in view_axes(Figure().subplots()).get_xlim()]
     [0.5, -0.5]
     """
-    ax = axes(
-        ax, xlabel="ball orientation (rad), left of the robot is left", ylabel="distance (mm)",
-        title=title,
-    )  # fmt: skip
+    xlabel = "ball orientation (rad), left of the robot is left"
+    ax = axes(ax, xlabel=xlabel, ylabel="distance (mm)", title=title)
     ax.set(xlim=VIEW_ORIENTATION, ylim=VIEW_DISTANCE)
     return ax
 
 
 def measurements(x: ArrayLike, y: ArrayLike, ax: Axes | None = None, **style: Any) -> Line2D:
-    """Draw hollow marks: what a sensor gave, or what somebody printed.
+    """Draw hollow marks: what a sensor measured, or what the thesis prints.
 
     Parameters
     ----------
     x, y : array_like, shape (n,)
         Places of the marks.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; by default on new axes.
     **style
         Passed to `matplotlib.axes.Axes.plot`.
-
-    Returns
-    -------
-    matplotlib.lines.Line2D
 
     Examples
     --------
@@ -128,9 +103,8 @@ def measurements(x: ArrayLike, y: ArrayLike, ax: Axes | None = None, **style: An
     >>> marks.get_label(), marks.get_markerfacecolor()
     ('thesis', 'none')
     """
-    ax = axes(ax) if ax is None else ax
     look = {"linestyle": "none", "marker": "o", "color": INK, "markerfacecolor": "none"}
-    (marks,) = ax.plot(np.asarray(x), np.asarray(y), **(look | style))
+    (marks,) = (ax or axes()).plot(np.asarray(x), np.asarray(y), **(look | style))
     return marks
 
 
@@ -143,22 +117,18 @@ def band(
     color: str = OURS,
     **style: Any,
 ) -> tuple[Line2D, FillBetweenPolyCollection]:
-    """Draw a mean as a line in a band that reaches one standard deviation to each side.
+    """Draw a mean as a line, in a band of one standard deviation to each side.
 
     Parameters
     ----------
     x, mean, std : array_like, shape (n,)
         Places, means and standard deviations.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; by default on new axes.
     color : str
-        Color of both.
+        Color of line and band.
     **style
         Passed to `matplotlib.axes.Axes.plot` for the line.
-
-    Returns
-    -------
-    matplotlib.lines.Line2D, matplotlib.collections.FillBetweenPolyCollection
 
     Examples
     --------
@@ -167,7 +137,7 @@ def band(
     >>> area.get_datalim(area.axes.transData).ymin
     np.float64(1.5)
     """
-    ax = axes(ax) if ax is None else ax
+    ax = ax or axes()
     x, mean, std = (np.asarray(values, dtype=float) for values in (x, mean, std))
     (line,) = ax.plot(x, mean, color=color, **style)
     area = ax.fill_between(x, mean - std, mean + std, color=color, alpha=0.25, linewidth=0)
@@ -177,7 +147,7 @@ def band(
 def cells(
     polygons: Sequence[NDArray[np.float64]], colors: Sequence[str], ax: Axes | None = None
 ) -> PolyCollection:
-    """Draw the cells of a partition, each in its color, with thin white borders.
+    """Draw the cells of a partition, with thin white borders.
 
     Parameters
     ----------
@@ -186,30 +156,23 @@ def cells(
     colors : sequence of str
         A color for each cell.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
-
-    Returns
-    -------
-    matplotlib.collections.PolyCollection
+        Where to draw; by default on new axes.
 
     Examples
     --------
-    >>> import numpy as np
     >>> from matplotlib.figure import Figure
     >>> square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
-    >>> drawn = cells([square, square + [1, 0]], CELLS[:2], Figure().subplots())
-    >>> len(drawn.get_paths())
+    >>> len(cells([square, square + [1, 0]], CELLS[:2], Figure().subplots()).get_paths())
     2
     """
-    ax = axes(ax) if ax is None else ax
     width = border_width(len(polygons))
     area = PolyCollection(list(polygons), facecolors=list(colors), edgecolors="white", lw=width)
-    ax.add_collection(area)
+    (ax or axes()).add_collection(area)
     return area
 
 
 def dot_radius(n: int) -> float:
-    """Return a radius, in points, at which `n` dots neither hide their cells nor vanish.
+    """Return a radius (points) at which `n` dots stay visible and hide little of their cells.
 
     Examples
     --------
@@ -220,7 +183,7 @@ def dot_radius(n: int) -> float:
 
 
 def border_width(n: int) -> float:
-    """Return a width, in points, at which the borders of `n` cells leave the cells to be seen.
+    """Return a width (points) at which the borders of `n` cells hide little of the cells.
 
     Examples
     --------
