@@ -1,4 +1,4 @@
-"""Figures 2.1 and 2.2, and the pictures of the chapter on reinforcement learning.
+"""Figures 2.1 and 2.2, and the plots of the chapter on reinforcement learning.
 
 References
 ----------
@@ -14,72 +14,35 @@ best is the upper with 5 steps left, the middle discounted by 0.9, the lower on 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import FillBetweenPolyCollection
-from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch
-from matplotlib.text import Text
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from arkaq_edu import _checks
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.figures.drawing.diagram import Diagram, blank, box, frame, wire, words
-from arkaq_edu.mdp import average_reward, delayed_rewards, discounted, finite_horizon
-
-#: The chains of figure 2.2, from the top: how many steps earn nothing, and what each later one
-#: earns.
-CHAINS = {"upper": (2, 2.0), "middle": (5, 10.0), "lower": (6, 11.0)}
-#: A color for each chain: to enter one is an action.
-CHAIN_COLORS = dict(zip(CHAINS, list(style.ACTIONS.values())[:3], strict=True))
-#: The colors of lines that are compared, in their order.
-SERIES = (
-    style.QUIET, style.ACTIONS["left"], style.ACTIONS["right"], style.ACTIONS["forward"],
-    style.OURS,
-)  # fmt: skip
+from arkaq_edu.figures.drawing.diagram import blank, box, frame, wire, words
+from arkaq_edu.figures.drawing.plot import Plot
+from arkaq_edu.figures.drawing.style import CHAIN_COLORS, SERIES
+from arkaq_edu.mdp.optimality import CHAINS, best_chains, earnings
 
 
-class ChainsPlot(NamedTuple):
-    """What `figure_2_2` drew: the arrows of each chain, and what it earns by each model."""
-
-    ax: Axes
-    chains: dict[str, list[FancyArrowPatch]]
-    earnings: dict[str, list[Text]]
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return self.ax.get_title(loc="left")
-
-
-class RegretPlot(NamedTuple):
-    """What `plot_regret` drew: a line and a band for each way to play, by name."""
-
-    ax: Axes
-    lines: dict[str, Line2D]
-    bands: dict[str, FillBetweenPolyCollection]
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return self.ax.get_title(loc="left")
-
-
-def figure_2_1(ax: Axes | None = None) -> Diagram:
+def figure_2_1(ax: Axes | None = None) -> Plot:
     """Draw figure 2.1, the loop of an agent and its world.
 
-    The indication I and the reward R are sensors: they are part of the agent's body, and its policy
-    takes what they give.
+    The indication I and the reward R are sensors. They belong to the agent's body, and its policy
+    uses what they measure.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        The axes; new ones if None.
 
     Returns
     -------
-    Diagram
-        ``ax``, ``parts`` and ``wires``.
+    Plot
+        With ``parts`` and ``wires``.
 
     References
     ----------
@@ -122,26 +85,26 @@ def figure_2_1(ax: Axes | None = None) -> Diagram:
     }
     for name in "oras":
         parts[name].set_zorder(3)
-    return Diagram(ax, parts, wires)
+    return Plot(ax, parts=parts, wires=wires)
 
 
-def figure_2_2(ax: Axes | None = None, *, horizon: int = 5, gamma: float = 0.9) -> ChainsPlot:
+def figure_2_2(ax: Axes | None = None, *, horizon: int = 5, gamma: float = 0.9) -> Plot:
     """Draw figure 2.2: three chains to choose from, and what each earns by each model.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        The axes; new ones if None.
     horizon : int
-        How many steps the finite-horizon model counts, at least 1.
+        The number of steps that the finite-horizon model counts, at least 1.
     gamma : float
         The discount rate, in [0, 1).
 
     Returns
     -------
-    ChainsPlot
-        ``ax``; ``chains``, the arrows of each; ``earnings``, for each what it earns by the
-        finite-horizon, the discounted and the average-reward model, bold where none earns more.
+    Plot
+        With ``chains``, the arrows of each chain, and ``earnings``, what each chain earns by the
+        finite-horizon, the discounted and the average-reward model. The most is in bold.
 
     References
     ----------
@@ -175,87 +138,33 @@ def figure_2_2(ax: Axes | None = None, *, horizon: int = 5, gamma: float = 0.9) 
         for text, model in zip(told[name], earned, strict=True):
             text.set(fontsize=11, weight="bold" if name in best_chains(model) else "normal")
     ax.add_patch(Circle((0.0, 2.4), 0.2, facecolor=style.INK, edgecolor=style.INK, zorder=3))
-    return ChainsPlot(ax, chains, told)
-
-
-def earnings(horizon: int, gamma: float) -> NDArray[np.float64]:
-    """Return what the chains of figure 2.2 earn by each of the three models.
-
-    Parameters
-    ----------
-    horizon : int
-        How many steps the finite-horizon model counts, at least 1.
-    gamma : float
-        The discount rate, in [0, 1).
-
-    Returns
-    -------
-    array, shape (3, 3)
-        A row for each model, in the order of equations 2.1 to 2.3; a column for each chain.
-
-    References
-    ----------
-    Thesis, equations 2.1 to 2.3.
-
-    Examples
-    --------
-    >>> earnings(5, 0.9).round(1)
-    array([[ 6. ,  0. ,  0. ],
-           [16.2, 59. , 58.5],
-           [ 2. , 10. , 11. ]])
-    """
-    delays, rewards = zip(*CHAINS.values(), strict=True)
-    world = delayed_rewards(delays, rewards, gamma)
-    return np.array(
-        [finite_horizon(world, horizon)[-1, 0], discounted(world)[0], average_reward(world)[0]]
-    )
-
-
-def best_chains(earned: ArrayLike) -> list[str]:
-    """Return the names of the chains that earn as much as any.
-
-    Parameters
-    ----------
-    earned : array_like, shape (3,)
-        What each chain earns, by one model.
-
-    Returns
-    -------
-    list of str
-        Names of `CHAINS`.
-
-    Examples
-    --------
-    >>> best_chains([100.0, 110.0, 110.0])
-    ['middle', 'lower']
-    """
-    best = np.isclose(earned, np.max(earned))
-    return [name for name, is_best in zip(CHAINS, best, strict=True) if is_best]
+    return Plot(ax, chains=chains, earnings=told)
 
 
 def plot_regret(
     regrets: Mapping[str, ArrayLike], ax: Axes | None = None, *, title: str = ""
-) -> RegretPlot:
-    """Draw how regret grows: for each way to play the mean of its players, and one sigma.
+) -> Plot:
+    """Draw how regret grows: for each strategy the mean of its players, with one sigma.
 
     Parameters
     ----------
     regrets : mapping of str to array_like, shape (players, pulls)
-        Regret so far by pull, at least 20 players each; at most five ways to play.
+        The regret so far of each player after each pull, for at most five strategies with at
+        least 20 players each.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        The axes; new ones if None.
     title : str
-        What the picture states.
+        What the plot states.
 
     Returns
     -------
-    RegretPlot
-        ``ax``, ``lines`` and ``bands``.
+    Plot
+        With ``lines`` and ``bands`` by name.
 
     Raises
     ------
     ValueError
-        If there are more than five, or too few players for a band.
+        If there are more than five strategies, or too few players for a band.
 
     References
     ----------
@@ -269,7 +178,7 @@ def plot_regret(
     array([1., 2.])
     """
     if len(regrets) > len(SERIES):
-        raise ValueError(f"regrets must hold at most {len(SERIES)} ways to play, got {[*regrets]}")
+        raise ValueError(f"regrets must hold at most {len(SERIES)} strategies, got {[*regrets]}")
     ax = style.axes(ax, xlabel="pulls so far", ylabel="regret so far (coins)", title=title)
     lines, bands = {}, {}
     for (name, values), color in zip(regrets.items(), SERIES, strict=False):
@@ -282,17 +191,18 @@ def plot_regret(
         )
     ax.set_ylim(bottom=0)
     ax.legend(frameon=False)
-    return RegretPlot(ax, lines, bands)
+    return Plot(ax, lines=lines, bands=bands)
 
 
 def _chain(ax: Axes, y: float, delay: int, reward: float, color: str) -> list[FancyArrowPatch]:
-    """Draw the states of a chain, from the second on, and the arrows; the last one earns."""
-    arrows = []
+    """Draw the states of a chain, from the second one, and its arrows; the last one earns."""
+    arrows, place = [], np.array([0.0, 2.4])
     for k in range(1, delay + 1):
-        x = 1.1 * k
-        start = (0.0, 2.4) if k == 1 else (x - 1.1, y)
-        arrows.append(wire(ax, *_between((start[0], start[1]), (x, y))))
-        ax.add_patch(Circle((x, y), 0.2, facecolor="white", edgecolor=style.INK))
+        previous, place = place, np.array([1.1 * k, y])
+        rim = 0.2 * (place - previous) / np.linalg.norm(place - previous)
+        arrows.append(wire(ax, *np.array([previous + rim, place - rim])))
+        ax.add_patch(Circle((1.1 * k, y), 0.2, facecolor="white", edgecolor=style.INK))
+    x = 1.1 * delay
     loop = FancyArrowPatch(
         (x + 0.12, y + 0.17), (x + 0.12, y - 0.17), connectionstyle="arc3,rad=-2.2",
         arrowstyle="-|>", mutation_scale=12, shrinkA=0, shrinkB=0, color=color,
@@ -300,13 +210,6 @@ def _chain(ax: Axes, y: float, delay: int, reward: float, color: str) -> list[Fa
     ax.add_patch(loop)
     words(ax, (x + 0.6, y), f"+{reward:g}", "left")
     return [*arrows, loop]
-
-
-def _between(start: tuple[float, float], end: tuple[float, float]) -> NDArray[np.float64]:
-    """Return where an arrow between two states begins and ends, at the rims of their circles."""
-    one, other = np.array(start), np.array(end)
-    step = 0.2 * (other - one) / np.linalg.norm(other - one)
-    return np.array([one + step, other - step])
 
 
 def _with_article(names: list[str]) -> str:

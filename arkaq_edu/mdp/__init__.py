@@ -13,7 +13,7 @@ In ARKAQ only the segmentation of the world is.)
 from arkaq_edu.mdp.bandits import UCB, Bandit, Boltzmann, EpsilonGreedy, Play, Random, play
 from arkaq_edu.mdp.choice import argmax_shared, softmax
 from arkaq_edu.mdp.gridworld import MOVES, Grid, grid_world
-from arkaq_edu.mdp.model import MDP
+from arkaq_edu.mdp.model import MDP, example_mdp
 from arkaq_edu.mdp.optimality import (
     CHAINS,
     average_reward,
@@ -64,6 +64,7 @@ __all__ = [
     "discounted_returns",
     "earnings",
     "error_bound",
+    "example_mdp",
     "exploit",
     "explore",
     "finite_horizon",

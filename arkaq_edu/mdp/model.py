@@ -221,3 +221,22 @@ class MDP:
                     R[s, a] += probability * r
         start = np.append(getattr(env, "initial_state_distrib", np.full(n, 1 / n)), 0.0)
         return cls(T, R, gamma, start)
+
+
+def example_mdp() -> MDP:
+    """Return the three states of figure 2.4, with numbers of our own.
+
+    References
+    ----------
+    Thesis, figure 2.4.
+
+    Examples
+    --------
+    >>> example_mdp()
+    MDP(3 states, 2 actions, gamma=0.9)
+    """
+    T = [
+        [[0.3, 0.7, 0.0], [0.6, 0.0, 0.4], [0.0, 0.2, 0.8]],
+        [[0.2, 0.8, 0.0], [0.0, 0.3, 0.7], [0.9, 0.0, 0.1]],
+    ]
+    return MDP(T, R=[[0, -1], [5, 0], [0, 2]], gamma=0.9)

@@ -13,15 +13,18 @@ from numpy.typing import NDArray
 
 from arkaq_edu import _checks
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.figures.learning import CHAIN_COLORS, CHAINS, SERIES, best_chains, earnings
+from arkaq_edu.figures.drawing.style import CHAIN_COLORS, SERIES
 from arkaq_edu.mdp import (
+    CHAINS,
     UCB,
     Bandit,
     Boltzmann,
     EpsilonGreedy,
     Random,
+    best_chains,
     delayed_rewards,
     discounted,
+    earnings,
     finite_horizon,
     play,
     regret,
@@ -30,31 +33,31 @@ from arkaq_edu.mdp.bandits import Strategy
 from arkaq_edu.widgets.explorer import Buttons, Explorer, wide
 from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Text, between
 
-LONGEST = 30  # steps: where the slider of the horizon ends
+LONGEST = 30  # steps: the last stop of the slider of the horizon
 GAMMAS = tuple(step / 100 for step in range(100))  # the stops of the slider of gamma
 
 #: The names on the buttons; machine i of the bandit is the i-th.
 MACHINES = ("machine 1", "machine 2", "machine 3", "machine 4")
-#: What has been pressed when the explorer opens: every machine three times.
+#: The presses with which the explorer opens: every machine three times.
 OPENING = MACHINES * 3
-#: The ways to play beside the student's, as the classes set them.
+#: The strategies that play beside the student, with their default parameters.
 STRATEGIES: dict[str, Strategy] = {
     "random": Random(),
     "epsilon-greedy": EpsilonGreedy(),
     "Boltzmann": Boltzmann(),
     "UCB": UCB(),
 }
-PLAYERS = 300  # so many play each strategy on the same machines
+PLAYERS = 300  # players of each strategy
 
-_LENGTHS = (40, 70, 100, 150, 200, 300, 500, 1000)  # pulls: where the axis of a game ends
+_LENGTHS = (40, 70, 100, 150, 200, 300, 500, 1000)  # pulls: the ends of the axis of a game
 _TIE = "#c9c9c9"
 
 
 def horizon_explorer() -> Explorer:
     """Return sliders for horizon and discount above the three models of optimality.
 
-    The choice is that of figure 2.2: three chains, which pay 2, 10 and 11 a step, the better the
-    later.
+    The choice is that of figure 2.2: three chains that pay 2, 10 and 11 a step. The better ones
+    start to pay later.
 
     Returns
     -------
@@ -63,7 +66,7 @@ def horizon_explorer() -> Explorer:
 
     References
     ----------
-    Thesis, equations 2.1 to 2.3 and figure 2.2, at whose numbers it starts.
+    Thesis, equations 2.1 to 2.3 and figure 2.2. The sliders start at its numbers.
 
     Examples
     --------
@@ -84,10 +87,10 @@ def horizon_explorer() -> Explorer:
 
 
 def draw_models(h: int, gamma: float) -> Scene:
-    """Return the picture for a horizon and a discount: a panel for each model.
+    """Return the picture for a horizon and a discount, with a panel for each model.
 
-    All three show rewards per step, so that they share an axis: the sum of h rewards over h, the
-    discounted sum times 1 - gamma. That changes no choice.
+    All panels show rewards per step, so that they share an axis: the sum of h rewards divided by h,
+    and the discounted sum times 1 - gamma. This changes no choice.
 
     Parameters
     ----------
@@ -130,11 +133,10 @@ def _coins(x: float) -> str:
 
 @cache
 def _curves() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return reward per step of each chain: at each horizon, at each discount."""
-    delays, rewards = zip(*CHAINS.values(), strict=True)
+    """Return the reward per step of each chain, for all horizons and for all discounts."""
     steps = np.arange(1, LONGEST + 1)
-    finite = finite_horizon(delayed_rewards(delays, rewards), LONGEST)[:, 0] / steps[:, None]
-    geometric = [(1 - g) * discounted(delayed_rewards(delays, rewards, g))[0] for g in GAMMAS]
+    finite = finite_horizon(delayed_rewards(), LONGEST)[:, 0] / steps[:, None]
+    geometric = [(1 - g) * discounted(delayed_rewards(gamma=g))[0] for g in GAMMAS]
     return finite, np.array(geometric)
 
 
@@ -146,7 +148,7 @@ def _model(
     head: str,
     earned: NDArray[np.float64],
 ) -> Panel:
-    """Return a panel with a curve for each chain, the present marked, the choice at its foot."""
+    """Return a panel with a curve for each chain, marks at the slider, and the choice below."""
     at = int(np.abs(x - now).argmin())
     left, right = float(x[0]), float(x[-1])
     pad = 0.03 * (right - left)
@@ -171,7 +173,7 @@ def _model(
 def _strip(
     x: NDArray[Any], best: NDArray[np.bool_], within: tuple[float, float, float, float]
 ) -> Cells:
-    """Return the strip at the foot: the color of the chain that is chosen, gray for a tie."""
+    """Return the strip below the curves: the color of the chosen chain, gray for a tie."""
     edges = np.concatenate([x[:1], (x[1:] + x[:-1]) / 2, x[-1:]]).astype(float)
     pieces, colors, start = [], [], 0
     for chosen, run in groupby(map(tuple, best)):
@@ -195,7 +197,7 @@ def _averages(earned: NDArray[np.float64]) -> Panel:
 
 
 class Game(NamedTuple):
-    """What a student has done: the machines, which were pulled, and what each pull paid."""
+    """The student's game: the machines, which were pulled, and what each pull paid."""
 
     bandit: Bandit
     arms: NDArray[np.int64]
@@ -203,18 +205,18 @@ class Game(NamedTuple):
 
 
 def bandit_explorer() -> Explorer:
-    """Return buttons for four gambling machines, above the student's regret and that of others.
+    """Return buttons for four gambling machines, above the regret of the student and of others.
 
-    Beside the student play `PLAYERS` players of each of the `STRATEGIES`, on the same machines and
-    as many pulls. What a press pays depends on the number of the machines and on what was pressed
-    before, on nothing else. Other machines start a new game.
+    `PLAYERS` players of each of the `STRATEGIES` play beside the student, on the same machines and
+    with as many pulls. What a press pays depends only on the number of the machines and on the
+    earlier presses. Other machines start a new game.
 
     Returns
     -------
     Explorer
-        Its controls are ``controls["machines"]``, a number for each set of machines; the buttons
-        ``controls["pulls"]``; and the box ``controls["reveal"]``, which shows the chances and takes
-        the luck out of the regret.
+        Its controls are ``controls["machines"]``, the number of a set of machines; the buttons
+        ``controls["pulls"]``; and the box ``controls["reveal"]``, which shows the probabilities and
+        removes the luck from the regret.
 
     References
     ----------
@@ -241,14 +243,14 @@ def bandit_explorer() -> Explorer:
 
 
 def game(machines: int, pulls: Sequence[str]) -> Game:
-    """Return what a history of presses has paid.
+    """Return what a series of presses pays.
 
     Parameters
     ----------
     machines : int
-        Which machines; each number has its own chances, and its own luck.
+        The number of a set of machines, with its own probabilities and its own luck.
     pulls : sequence of str
-        Names of `MACHINES` in the order in which they were pressed.
+        Names of `MACHINES` in the order of the presses.
 
     Returns
     -------
@@ -263,7 +265,7 @@ def game(machines: int, pulls: Sequence[str]) -> Game:
     chances, luck = np.random.default_rng(machines).spawn(2)
     bandit = Bandit(chances.uniform(0.1, 0.9, len(MACHINES)).round(2))
     arms = np.array([MACHINES.index(name) for name in pulls], dtype=np.int64)
-    # One number of the luck for each pull, in their order: what comes later changes nothing.
+    # Each pull takes one random number, in their order: later pulls change nothing.
     return Game(bandit, arms, bandit.pull(arms, luck))
 
 
@@ -273,9 +275,9 @@ def draw_bandit(machines: int, pulls: Sequence[str], reveal: bool) -> Scene:
     Parameters
     ----------
     machines, pulls
-        As `game` takes them.
+        As for `game`.
     reveal : bool
-        Whether the chances of the machines are shown, and regret is counted without luck.
+        Whether the probabilities of the machines are shown and regret is counted without luck.
 
     Returns
     -------
@@ -302,14 +304,14 @@ def draw_bandit(machines: int, pulls: Sequence[str], reveal: bool) -> Scene:
 def crowd(
     machines: int, length: int, *, luck: bool
 ) -> dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]:
-    """Return mean and standard deviation of the regret of the players of each strategy.
+    """Return the mean and standard deviation of the regret of the players of each strategy.
 
     Parameters
     ----------
     machines : int
-        Which machines, as `game` takes them.
+        The number of a set of machines, as for `game`.
     length : int
-        How many pulls, at least 1; fewer are the beginning of more.
+        The number of pulls, at least 1. A short game is the beginning of a longer one.
     luck : bool
         Whether regret counts what the pulls paid, or what they pay on average.
 
@@ -324,15 +326,13 @@ def crowd(
     {'random': 9.4, 'epsilon-greedy': 6.6, 'Boltzmann': 6.6, 'UCB': 7.3}
     """
     bandit = game(machines, ()).bandit
-    lots = np.random.default_rng(machines).spawn(2 + len(STRATEGIES))[2:]
+    # The first two generators belong to the student's game.
+    rngs = np.random.default_rng(machines).spawn(2 + len(STRATEGIES))[2:]
     found = {}
-    for (name, strategy), rng in zip(STRATEGIES.items(), lots, strict=True):
+    for (name, strategy), rng in zip(STRATEGIES.items(), rngs, strict=True):
         played = play(bandit, strategy, length, players=PLAYERS, rng=rng)
         so_far = regret(played.rewards if luck else played.expected, bandit.best)
-        found[name] = (
-            np.append(0.0, so_far.mean(axis=0)),
-            np.append(0.0, so_far.std(axis=0)),
-        )
+        found[name] = np.append(0.0, so_far.mean(axis=0)), np.append(0.0, so_far.std(axis=0))
     return found
 
 

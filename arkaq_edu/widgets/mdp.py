@@ -1,4 +1,4 @@
-"""Two explorers on one small floor: value iteration sweep by sweep, and Q-learning step by step."""
+"""Two explorers on one small floor: value iteration by sweeps, and Q-learning by steps."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.figures.mdp import BALL, HOLE, SHADES, STONE, floor_polygons
-from arkaq_edu.mdp import QLearner, best_actions, error_bound, policy_iteration, train
+from arkaq_edu.figures.drawing.floor import BALL, HOLE, SHADES, STONE, floor_polygons
+from arkaq_edu.mdp import MDP, QLearner, best_actions, error_bound, policy_iteration, train
 from arkaq_edu.mdp.gridworld import Grid, grid_world
 from arkaq_edu.widgets.explorer import Explorer, wide
 from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Text, between
 
-#: How many sweeps the slider of value iteration goes up to.
+#: The last stop of the slider of sweeps.
 SWEEPS = 40
-#: Where the slider of Q-learning stops: steps of the robot's life.
+#: The stops of the slider of steps.
 STEPS = (0, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000)
-#: Its learning rates.
+#: The stops of the slider of the learning rate.
 RATES: tuple[float | str, ...] = ("1/visits", 0.05, 0.1, 0.2, 0.5, 1.0)
-#: How many robots live beside the one that is shown.
+#: The robots that learn, including the one that is shown.
 RUNS = 20
 
 _WIDE = wide("7em")
@@ -41,9 +41,9 @@ class Sweeps(NamedTuple):
     best : ndarray of bool, shape (n + 1, S, A)
         The best actions by those values.
     error, bound : ndarray, shape (n + 1,)
-        How far they are from V* at most, and what `error_bound` says without knowing V*.
+        The largest distance from V*, and the bound that `error_bound` gives without V*.
     right : ndarray of bool, shape (n + 1, S)
-        Whether all arrows of the state are best by V*, too.
+        Whether all arrows of the state are also best by V*.
     """
 
     grid: Grid
@@ -63,7 +63,7 @@ def sweeps(gamma: float, slip: float) -> Sweeps:
     gamma : float
         The discount rate, in [0, 1).
     slip : float
-        How likely a step goes aside, in [0, 1].
+        The probability that a step goes to one side instead, in [0, 1].
 
     Returns
     -------
@@ -85,15 +85,19 @@ def sweeps(gamma: float, slip: float) -> Sweeps:
     for n in range(SWEEPS):
         V[n + 1] = mdp.action_values(V[n]).max(axis=1)
     exact, _ = policy_iteration(mdp)
-    truly = best_actions(mdp.action_values(exact))
     best = np.array([best_actions(mdp.action_values(values)) for values in V])
-    right = ~(best & ~truly).any(axis=2) & ~mdp.ends
     bound = np.array([error_bound(mdp, values) for values in V])
-    return Sweeps(grid, V, best, np.abs(V - exact).max(axis=1), bound, right)
+    return Sweeps(grid, V, best, np.abs(V - exact).max(axis=1), bound, _right(mdp, best, exact))
+
+
+def _right(mdp: MDP, best: NDArray[np.bool_], exact: NDArray[np.floating]) -> NDArray[np.bool_]:
+    """Return for each state whether all its arrows are best by V*, too; never at an end."""
+    truly = best_actions(mdp.action_values(exact))
+    return ~(best & ~truly).any(axis=-1) & ~mdp.ends
 
 
 def planning_explorer() -> Explorer:
-    """Return sliders of sweeps, discount and slipping above a floor whose arrows turn.
+    """Return sliders for sweeps, discount and slip above a floor with values and arrows.
 
     Returns
     -------
@@ -123,16 +127,16 @@ def planning_explorer() -> Explorer:
 
 
 def draw_sweep(n: int, gamma: float, slip: float) -> Scene:
-    """Return the floor after n sweeps of value iteration, and how the error has fallen.
+    """Return the picture of the floor after n sweeps of value iteration, and of the error so far.
 
     Parameters
     ----------
     n : int
-        How many sweeps.
+        The number of sweeps.
     gamma : float
         The discount rate, in [0, 1).
     slip : float
-        How likely a step goes aside, in [0, 1].
+        The probability that a step goes to one side instead, in [0, 1].
 
     Returns
     -------
@@ -171,7 +175,7 @@ def _errors(run: Sweeps, n: int) -> Panel:
         Line(k[seen], error[seen], style.OURS, 2.0),
         Points([n], bound[[n]], 4.0, style.INK, hollow=True),
         Points([n], error[[n]], 4.5, style.OURS),
-        Text(18, 5000, "bound, told without V*"),
+        Text(18, 5000, "bound, computed without V*"),
         Text(18, 2200, "largest error of V", style.OURS),
     ]
     return Panel(
@@ -181,12 +185,12 @@ def _errors(run: Sweeps, n: int) -> Panel:
 
 
 class Life(NamedTuple):
-    """What robots have learned on the course's floor, at each stop of `STEPS`.
+    """What robots have learned on the course's floor after each number of `STEPS`.
 
     Attributes
     ----------
     Q : ndarray, shape (stops, S, A)
-        Of the robot that is shown.
+        The table of the robot that is shown.
     error : ndarray, shape (RUNS, stops)
         The mean of abs(max Q - V*) over the free squares, for each robot.
     """
@@ -197,19 +201,19 @@ class Life(NamedTuple):
 
 @cache
 def lives(alpha: float | str, temperature: float) -> Life:
-    """Return what `RUNS` robots learn with a learning rate and a temperature.
+    """Return what `RUNS` robots learn at a learning rate and a temperature.
 
     Parameters
     ----------
     alpha : float or "1/visits"
         The learning rate, as for `arkaq_edu.mdp.QLearner`.
     temperature : float
-        Of the Boltzmann choice, above 0.
+        The temperature of the Boltzmann choice, above 0.
 
     Returns
     -------
     Life
-        After each stop the robots begin a new episode.
+        The robots start a new episode after each number of `STEPS`.
 
     References
     ----------
@@ -238,7 +242,7 @@ def lives(alpha: float | str, temperature: float) -> Life:
 
 
 def q_learning_explorer() -> Explorer:
-    """Return sliders of steps, learning rate and temperature above what a robot has learned.
+    """Return sliders for steps, learning rate and temperature above what a robot has learned.
 
     Returns
     -------
@@ -274,7 +278,7 @@ def q_learning_explorer() -> Explorer:
 
 
 def draw_life(steps: int, alpha: float | str, temperature: float) -> Scene:
-    """Return what one robot knows after so many steps, and how far twenty of them are off.
+    """Return the picture of what one robot has learned, and of the errors of all robots.
 
     Parameters
     ----------
@@ -283,7 +287,7 @@ def draw_life(steps: int, alpha: float | str, temperature: float) -> Scene:
     alpha : float or "1/visits"
         The learning rate.
     temperature : float
-        Of the Boltzmann choice, above 0.
+        The temperature of the Boltzmann choice, above 0.
 
     Returns
     -------
@@ -291,9 +295,8 @@ def draw_life(steps: int, alpha: float | str, temperature: float) -> Scene:
     """
     life, grid, i = lives(alpha, temperature), grid_world(), STEPS.index(steps)
     mdp = grid.mdp
-    truly = best_actions(mdp.action_values(policy_iteration(mdp)[0]))
     best = best_actions(life.Q[i])
-    right = ~(best & ~truly).any(axis=1) & ~mdp.ends
+    right = _right(mdp, best, policy_iteration(mdp)[0])
     mean, spread = life.error.mean(axis=0), life.error.std(axis=0)
     fact = (
         f"{steps:,} steps: {right.sum()} of {(~mdp.ends).sum()} arrows are right; Q is off by "

@@ -7,6 +7,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from arkaq_edu.figures import FIGURES, learning
+from arkaq_edu.mdp import earnings
 
 
 @pytest.fixture
@@ -47,7 +48,7 @@ def test_figure_2_2_is_the_thesiss_chains_and_their_earnings(ax, horizon, gamma)
     expected = np.array(
         [by_hand(delay, reward, horizon, gamma) for delay, reward in ((2, 2), (5, 10), (6, 11))]
     )
-    assert pytest.approx(expected) == learning.earnings(horizon, gamma).T
+    assert pytest.approx(expected) == earnings(horizon, gamma).T
     for i, (name, delay) in enumerate({"upper": 2, "middle": 5, "lower": 6}.items()):
         assert len(plot.chains[name]) == delay + 1, "an arrow a step, and the last state's own"
         told = [text.get_text() for text in plot.earnings[name]]
@@ -107,7 +108,7 @@ def test_regret_is_drawn_as_mean_and_one_sigma(ax):
 def test_one_player_is_no_claim(ax):
     with pytest.raises(ValueError, match="UCB must be played by at least 20, got 19"):
         learning.plot_regret({"UCB": np.zeros((19, 5))}, ax)
-    with pytest.raises(ValueError, match="at most 5 ways"):
+    with pytest.raises(ValueError, match="at most 5 strategies"):
         learning.plot_regret({str(i): np.zeros((20, 5)) for i in range(6)}, ax)
     with pytest.raises(ValueError, match="UCB must"):
         learning.plot_regret({"UCB": [[np.nan]] * 20}, ax)

@@ -13,9 +13,11 @@ from matplotlib.patches import Circle, RegularPolygon
 from matplotlib.path import Path
 
 from arkaq_edu.figures import FIGURES, mdp
+from arkaq_edu.figures.drawing import floor as drawn
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.mdp import (
     MDP,
+    MOVES,
     QLearner,
     best_actions,
     exploit,
@@ -261,10 +263,10 @@ def test_a_grid_shows_its_values_and_the_best_actions(ax):
 
 def test_an_arrow_points_where_its_action_leads():
     grid = grid_world(["...", "...", "..."])
-    for a, (dx, dy) in enumerate(mdp.MOVES.values()):
+    for a, (dx, dy) in enumerate(MOVES.values()):
         best = np.zeros((9, 4))
         best[:, a] = 1
-        floor = mdp.floor_polygons(grid, np.zeros(9), best)
+        floor = drawn.floor_polygons(grid, np.zeros(9), best)
         assert len(floor.arrows) == 9
         for place, arrow in zip(grid.places, floor.arrows, strict=True):
             tip = arrow[3] - arrow[[0, 6]].mean(axis=0)
@@ -275,15 +277,15 @@ def test_an_arrow_points_where_its_action_leads():
 def test_all_actions_alike_have_no_arrow_two_have_two_and_ends_none():
     grid = grid_world(["..o"])
     best = np.array([[1, 1, 1, 1], [1, 1, 0, 0], [1, 0, 0, 0]])
-    floor = mdp.floor_polygons(grid, [-50.0, 250.0, 0.0], best)
+    floor = drawn.floor_polygons(grid, [-50.0, 250.0, 0.0], best)
     assert len(floor.arrows) == 2
-    assert floor.shades == [0, len(mdp.SHADES) - 1, 0]
+    assert floor.shades == [0, len(drawn.SHADES) - 1, 0]
     assert len(floor.balls) == 1 and floor.balls[0].mean(axis=0) == pytest.approx([2.5, 0.5])
 
 
 def test_walls_and_holes_are_where_the_plan_has_them():
     grid = grid_world(["#.x", ".o#"])
-    floor = mdp.floor_polygons(grid, np.zeros(4), np.ones((4, 4)))
+    floor = drawn.floor_polygons(grid, np.zeros(4), np.ones((4, 4)))
     corners = [[tuple(p.min(axis=0)) for p in part] for part in (floor.walls, floor.holes)]
     assert corners == [[(0, 1), (2, 0)], [(2, 1)]]
     assert {tuple(square.min(axis=0)) for square in floor.squares} == {
@@ -293,9 +295,9 @@ def test_walls_and_holes_are_where_the_plan_has_them():
 
 def test_a_grid_needs_a_value_a_state():
     with pytest.raises(ValueError, match=r"V must have shape \(3,\), got \(2,\)"):
-        mdp.floor_polygons(grid_world(["..o"]), [1.0, 2.0], np.ones((3, 4)))
+        drawn.floor_polygons(grid_world(["..o"]), [1.0, 2.0], np.ones((3, 4)))
     with pytest.raises(ValueError, match=r"best must have shape \(3, 4\), got \(3,\)"):
-        mdp.floor_polygons(grid_world(["..o"]), [1.0, 2.0, 0.0], [0, 1, 2])
+        drawn.floor_polygons(grid_world(["..o"]), [1.0, 2.0, 0.0], [0, 1, 2])
 
 
 # --- bands ----------------------------------------------------------------------------------------

@@ -6,9 +6,10 @@ import re
 import numpy as np
 import pytest
 
-from arkaq_edu.figures import mdp as pictures
 from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.drawing.floor import SHADES
 from arkaq_edu.mdp import (
+    MOVES,
     QLearner,
     best_actions,
     grid_world,
@@ -55,16 +56,16 @@ def arrows(scene):
     found = set()
     for arrow in layer.polygons:
         tip = arrow[3] - arrow[[0, 6]].mean(axis=0)
-        way = tuple(np.rint(tip / np.hypot(*tip)).astype(int).tolist())
-        found.add((*np.floor(arrow.mean(axis=0)).astype(int).tolist(), *way))
+        step = tuple(np.rint(tip / np.hypot(*tip)).astype(int).tolist())
+        found.add((*np.floor(arrow.mean(axis=0)).astype(int).tolist(), *step))
     return found
 
 
 def wanted(grid, best):
     return {
-        (*place, *way)
+        (*place, *step)
         for place, row, end in zip(grid.places.tolist(), best, grid.mdp.ends, strict=True)
-        for way, is_best in zip(pictures.MOVES.values(), row, strict=True)
+        for step, is_best in zip(MOVES.values(), row, strict=True)
         if is_best and not row.all() and not end
     }
 
@@ -96,7 +97,7 @@ def test_the_floor_shows_the_values_after_n_sweeps_and_their_best_actions(explor
     assert bound == pytest.approx(np.abs(following - V).max() / (1 - gamma), abs=0.051)
     assert arrows(explorer.drawn) == wanted(grid, best)
     squares = explorer.drawn.panels[0].layers[0]
-    top = len(pictures.SHADES) - 1
+    top = len(SHADES) - 1
     assert squares.colors == np.rint(np.clip(V, 0, 100) / 100 * top).astype(int).tolist()
 
 
@@ -132,12 +133,12 @@ def test_the_lines_are_error_and_bound_and_the_dots_stand_at_this_sweep(explorer
 
 def test_the_chapter_asks_of_the_bridge_and_this_is_the_answer():
     """At its left end: across by default; away where feet slip, and where the sight is short."""
-    ways = {}
+    chosen = {}
     for gamma, slip in ((0.95, 0.1), (0.95, 0.5), (0.5, 0.1)):
         run = widgets.sweeps(gamma, slip)
-        ways[gamma, slip] = run.best[-1][run.grid.places.tolist().index([2, 3])].tolist()
+        chosen[gamma, slip] = run.best[-1][run.grid.places.tolist().index([2, 3])].tolist()
     across, away = [True, False, False, False], [False, False, True, False]
-    assert list(ways.values()) == [across, away, away]
+    assert list(chosen.values()) == [across, away, away]
 
 
 def test_a_slider_that_adds_up_steps_is_no_other_world():
@@ -192,7 +193,7 @@ def test_the_band_says_what_the_chapter_says_of_learning_rate_and_temperature():
     }
     assert final[0.1, 10.0] < 10
     assert final[1.0, 1000.0] > 60, "hot and hasty: every fall counts as if it were certain"
-    assert final[0.1, 0.1] > 30, "cold: it takes the first way it finds"
+    assert final[0.1, 0.1] > 30, "cold: it takes the first step it finds"
     assert final["1/visits", 10.0] > 15, "the first, empty targets weigh too long"
 
 

@@ -37,6 +37,11 @@ ACTIONS = {"forward": "#16324f", "left": "#c8501e", "right": "#5aaadf", "kick": 
 # color vision.
 CELLS = ("#d6f4f4", "#e1e5cf", "#a4e2f7", "#dccda4", "#a5cacc", "#afbda8")
 
+# The chains of figure 2.2: to enter one is an action.
+CHAIN_COLORS = dict(zip(("upper", "middle", "lower"), list(ACTIONS.values())[:3], strict=True))
+# Lines that are compared, in their order.
+SERIES = (QUIET, ACTIONS["left"], ACTIONS["right"], ACTIONS["forward"], OURS)
+
 # The camera shows .4965 rad to each side; the thesis gives .5 rad, and 200 to 4,100 mm.
 VIEW_ORIENTATION = (0.5, -0.5)
 VIEW_DISTANCE = (0.0, 4500.0)
