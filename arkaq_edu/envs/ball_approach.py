@@ -12,28 +12,34 @@ from arkaq_edu import _checks
 from arkaq_edu.field import Camera, Legs, Supervisor, World, bird_view
 from arkaq_edu.field.supervisor import MAX_BALL_DISTANCE, Placement
 
-# Left and right footstep (mm): forward, and arcs that turn by a tenth of a radian.
-FOOTSTEPS = ((100.0, 100.0), (91.0, 109.0), (109.0, 91.0))
 ACTIONS = ("forward", "left", "right")
-_MOST_DISTANCE, _MOST_ORIENTATION = 8000.0, 0.6
+# The left and the right footstep of each action (mm). The arcs turn by a tenth of a radian.
+FOOTSTEPS = ((100.0, 100.0), (91.0, 109.0), (109.0, 91.0))
+# Limits of the observations: more than the diagonal of the carpet (mm), and more than half the
+# camera's field of view (rad).
+_MAX_DISTANCE, _MAX_ORIENTATION = 8000.0, 0.6
 
 
 class BallApproachEnv(gymnasium.Env[np.ndarray, int]):
-    """Walk to a ball that stands somewhere in the field of view.
+    """Walk to a ball that lies somewhere in the field of view.
+
+    A legged robot stands at one end of a field and sees the ball through its camera. It should
+    walk up to the ball, and have it straight ahead when it arrives. Lengths are in mm, angles in
+    rad and positive to the left.
 
     ## Action space
 
-    ``Discrete(3)``, one footstep cycle (640 ms) a step:
+    ``Discrete(3)``. Each step is one footstep cycle (640 ms):
 
-    | action | name | left, right footstep | what it does |
+    | action | name | left, right footstep | effect |
     |---|---|---|---|
-    | 0 | forward | 100, 100 mm | walks 100 mm, drifting left and turning a little right |
-    | 1 | left | 91, 109 mm | walks 100 mm on an arc that turns .1 rad to the left |
-    | 2 | right | 109, 91 mm | walks 100 mm on an arc that turns .1 rad to the right |
+    | 0 | forward | 100, 100 mm | walks 100 mm, drifts left and turns a little to the right |
+    | 1 | left | 91, 109 mm | walks 100 mm along an arc that turns .1 rad to the left |
+    | 2 | right | 109, 91 mm | walks 100 mm along an arc that turns .1 rad to the right |
 
     ## Observation space
 
-    ``Box(float32, (3,))``, out of the camera's pixels:
+    ``Box(float32, (3,))``, measured from the camera's pixels:
 
     | entry | meaning | low | high |
     |---|---|---|---|
@@ -43,29 +49,35 @@ class BallApproachEnv(gymnasium.Env[np.ndarray, int]):
 
     ## Rewards
 
-    +100 when the true distance falls under 500 mm, and +50 more if the ball then lies within
-    .05 rad of straight ahead; 0 otherwise.
+    +100 in the cycle in which the true distance falls below 500 mm, and +50 more if the ball is
+    then within .05 rad of straight ahead. 0 in all other cycles.
 
-    ## Start
+    ## Starting state
 
-    The robot stands before its own goal and looks up the field; the ball is placed by the
-    supervisor, uniform over the visible field between `near` and `far`. With
-    ``options={"distance": mm, "orientation": rad}`` in ``reset`` it is put just there.
+    The robot stands in front of its own goal and looks up the field. The supervisor puts the ball
+    at a random place that the camera can see, between `near` and `far`. With
+    ``options={"distance": mm, "orientation": rad}`` in ``reset``, it puts the ball there instead:
+    the distance in [200, 4100], the orientation in [-.5, .5].
 
-    ## End
+    ## Episode end
 
-    Terminated: the true distance is under 500 mm. Truncated: the camera has not seen the ball for
-    `patience` cycles in a row (it is out of view for good), or 150 cycles have passed.
+    Terminated when the true distance is below 500 mm. Truncated when the camera has not seen the
+    ball for `patience` cycles in a row, since it is then out of view for good, or after 150
+    cycles (the ``max_episode_steps`` of `gymnasium.make`).
 
-    ## Info
+    ## Information
 
-    From ``reset`` and ``step``: the true `distance` (mm) and `orientation` (rad), `is_success`
-    (True from the cycle in which the ball is reached).
+    ``reset`` and ``step`` return the true `distance` (mm) and `orientation` (rad) of the ball, and
+    `is_success`: True once the ball is reached.
+
+    ## Version history
+
+    v0: first version.
 
     Parameters
     ----------
     near, far : float
-        The nearest and farthest start of the ball (mm), in [200, 4100].
+        The least and the greatest distance of the ball at the start (mm), in [200, 4100].
     placement : {"area", "thesis"}
         How the ball is placed; see `arkaq_edu.field.random_place`.
     legs : Legs, optional
@@ -73,13 +85,18 @@ class BallApproachEnv(gymnasium.Env[np.ndarray, int]):
     camera : Camera, optional
         The camera.
     patience : int
-        Cycles without a sighting after which the ball counts as lost.
+        The number of cycles without a sighting after which the ball is lost, at least 1.
     render_mode : {"rgb_array"}, optional
-        The field from above.
+        A picture of the field from above.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range or unknown.
 
     References
     ----------
-    Thesis 5.2 (interval of the inputs, actions) and 5.2.2 (rewards).
+    Thesis 5.2 (intervals of the inputs, actions) and 5.2.2 (rewards).
 
     Examples
     --------
@@ -114,14 +131,14 @@ class BallApproachEnv(gymnasium.Env[np.ndarray, int]):
         self.world = World(legs=legs)
         self.trail: list[tuple[float, float]] = []
         self.action_space = spaces.Discrete(len(FOOTSTEPS))  # type: ignore[assignment]
-        low = np.array([0.0, -_MOST_ORIENTATION, 0.0], dtype=np.float32)
-        high = np.array([_MOST_DISTANCE, _MOST_ORIENTATION, 1.0], dtype=np.float32)
+        low = np.array([0.0, -_MAX_ORIENTATION, 0.0], dtype=np.float32)
+        high = np.array([_MAX_DISTANCE, _MAX_ORIENTATION, 1.0], dtype=np.float32)
         self.observation_space = spaces.Box(low, high, dtype=np.float32)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Start an episode; see the class's Start."""
+        """Start an episode; see Starting state above."""
         super().reset(seed=seed)
         self.world.rng = self.np_random
         place = dict(options or {})
@@ -141,7 +158,7 @@ class BallApproachEnv(gymnasium.Env[np.ndarray, int]):
         return self._observe(), self._info(self.supervisor.judge(self.world).is_success)
 
     def step(self, action: int) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Take one footstep cycle."""
+        """Walk one footstep cycle."""
         if action not in (0, 1, 2):
             raise ValueError(f"action must be 0, 1 or 2, got {action!r}")
         self.world.cycle(*FOOTSTEPS[int(action)])
@@ -153,7 +170,7 @@ class BallApproachEnv(gymnasium.Env[np.ndarray, int]):
         return observation, verdict.reward, verdict.is_success, lost, self._info(verdict.is_success)
 
     def render(self) -> np.ndarray | None:
-        """Draw the field from above, with the way walked so far."""
+        """Draw the field from above, with the robot's path so far."""
         if self.render_mode is None:
             gymnasium.logger.warn("render() draws only with render_mode='rgb_array'")
             return None
@@ -163,8 +180,8 @@ class BallApproachEnv(gymnasium.Env[np.ndarray, int]):
         seen = self.camera.sighting(self.world)
         if seen is None:
             return np.zeros(3, dtype=np.float32)
-        distance = min(seen.distance, _MOST_DISTANCE)
-        orientation = max(-_MOST_ORIENTATION, min(_MOST_ORIENTATION, seen.orientation))
+        distance = min(seen.distance, _MAX_DISTANCE)
+        orientation = max(-_MAX_ORIENTATION, min(_MAX_ORIENTATION, seen.orientation))
         return np.array([distance, orientation, 1.0], dtype=np.float32)
 
     def _info(self, is_success: bool) -> dict[str, Any]:

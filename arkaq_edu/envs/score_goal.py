@@ -15,57 +15,73 @@ from arkaq_edu.field.goal import MAX_GOAL_DISTANCE, MIN_GOAL_DISTANCE, MISS_REWA
 
 ACTIONS = ("turn left", "turn right", "kick")
 TURN_LEFT, TURN_RIGHT, KICK = range(3)
+# The angle of a turn (rad): aimed as well as turns of this size allow, a kick from nearby scores
+# about as often as in the thesis.
 TURN = 0.15
-_MOST_ORIENTATION = 2.2
+# More than the head's reach and half the camera's field of view together (rad).
+_MAX_ORIENTATION = 2.2
 
 
 class Start(NamedTuple):
-    """How far from the goal (mm), and how far it lies off straight ahead at the start (rad)."""
+    """Where an episode starts.
+
+    Attributes
+    ----------
+    distance : float
+        From the robot to the goal line (mm).
+    least, most : float
+        The least and the greatest angle between straight ahead and the goal, on either side (rad).
+    """
 
     distance: float
     least: float
     most: float
 
 
-# Thesis 5.3 gives no number. Its "near" is where the robot's kick, well aimed, scores about six
-# times in ten; its "far" is farther, and "not straight": the robot looks past the goal.
+# Thesis 5.3 gives no numbers. Near the goal, a well aimed kick scores about six times in ten. Far
+# from it, the robot also does not look straight at the goal.
 STARTS = {"near": Start(1850.0, 0.0, 0.4), "far": Start(2300.0, 0.25, 0.4)}
 
 
 class ScoreGoalEnv(gymnasium.Env[np.ndarray, int]):
     """Turn toward the goal and kick.
 
+    A legged robot stands in front of the goal, turned to one side, and sees the goal through its
+    camera. It may turn several times, but kick only once. Lengths are in mm, angles in rad
+    and positive to the left.
+
     ## Action space
 
     ``Discrete(3)``:
 
-    | action | name | left, right footstep | what it does |
+    | action | name | left, right footstep | effect |
     |---|---|---|---|
     | 0 | turn left | -13.5, 13.5 mm | turns .15 rad to the left on the spot in one cycle (640 ms) |
     | 1 | turn right | 13.5, -13.5 mm | turns .15 rad to the right |
-    | 2 | kick | | the supervisor sets the ball before the paw, the paw swings, the ball rolls out |
+    | 2 | kick | | the supervisor puts the ball in front of the paw, the paw kicks it |
 
     ## Observation space
 
-    ``Box(float32, (2,))``, out of the camera's pixels:
+    ``Box(float32, (2,))``, measured from the camera's pixels:
 
     | entry | meaning | low | high |
     |---|---|---|---|
     | 0 | orientation of the goal's middle (rad, left positive); 0 without a sighting | -2.2 | 2.2 |
     | 1 | visible: 1 with a sighting, else 0 | 0 | 1 |
 
-    The robot looks after each turn. Where the picture cuts the goal, it pans its head to what it
-    saw, waits until the head is still, and looks again. The orientation is counted from the body.
+    The robot looks after each turn. If only a part of the goal is in the picture, the robot pans
+    its head toward it, waits until the head is still, and looks again. The orientation is
+    measured from the body.
 
     ## Rewards
 
-    +100 for a ball that comes to rest in the goal, -100 for a kick that misses, 0 for a turn. A
-    robot that has not kicked after `patience` turns has missed: -100.
+    +100 if the ball comes to rest in the goal, -100 if the kick misses, 0 for a turn. A robot that
+    has not kicked after `patience` turns has missed: -100.
 
-    ## Start
+    ## Starting state
 
-    The robot stands `goal_distance` straight before the middle of the sky-blue goal. The
-    orientation of the goal is drawn:
+    The robot stands at `goal_distance` from the middle of the sky-blue goal. The orientation of
+    the goal is random:
 
     | `goal_distance` | mm | orientation (rad) |
     |---|---|---|
@@ -73,42 +89,51 @@ class ScoreGoalEnv(gymnasium.Env[np.ndarray, int]):
     | "far" | 2300 | uniform in [.25, .4], on either side |
     | a number | that | uniform in [-.4, .4] |
 
-    So the goal's middle is in the picture. With ``options={"orientation": rad}`` in
-    ``reset`` the goal is just there.
+    So the middle of the goal is in the first picture. With ``options={"orientation": rad}`` in
+    ``reset``, the orientation is that one instead, in [-.5, .5].
 
-    ## End
+    ## Episode end
 
-    Terminated by the kick, or after `patience` turns. There is no time limit besides.
+    Terminated by the kick, or after `patience` turns. Never truncated.
 
-    ## Info
+    ## Information
 
-    From ``reset`` and ``step``: the true `orientation` (rad) of the goal's middle, `is_success`
-    (True when a goal has been scored), `time` (s since the start).
+    ``reset`` and ``step`` return the true `orientation` (rad) of the goal's middle, `is_success`
+    (True once a goal has been scored), and `time` (s since the start).
+
+    ## Version history
+
+    v0: first version.
 
     Parameters
     ----------
     goal_distance : {"near", "far"} or float
-        Where the robot stands (mm from its turning point to the goal line), in [800, 5000].
+        From the point on which the robot turns to the goal line (mm), in [800, 5000].
     legs : Legs, optional
         The gait's imperfections.
     head : Head, optional
-        How the head moves, and whether that blurs the pictures.
+        How the head moves, and whether moving blurs the pictures.
     kick : Kick, optional
         How the ball lies before a kick, and how straight it rolls.
     camera : Camera, optional
         The camera.
     patience : int
-        Turns after which the episode ends without a kick.
+        The number of turns after which the episode ends without a kick, at least 1.
     render_mode : {"rgb_array", "rgb_array_list"}, optional
-        The field from above: as it is now, or a film of all since the last ``render``, with the
-        ball on its way.
+        A picture of the field from above as it is now, or a film of all that happened since the
+        last ``render``, including the rolling ball.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range or unknown.
 
     Notes
     -----
-    The thesis gives neither distances, turn nor starts. The kick decides them: it is calibrated on
-    50 kicks of a real robot (`arkaq_edu.field.Kick`), and aimed as well as turns of .15 rad allow
-    it scores 63 % from 1,850 mm, where actions at random score 33 %: the thesis's "around 60" and
-    "around 35 per cent". From 2,300 mm it is 36 % and 12 %.
+    The thesis does not give the distances, the turn or the starting orientations. They follow from
+    the kick, which is calibrated on 50 kicks of a real robot (`arkaq_edu.field.Kick`). From 1,850
+    mm, it scores 63 % if it is aimed as well as turns of .15 rad allow; random actions score 33 %.
+    In the thesis these are "around 60" and "around 35 per cent". From 2,300 mm, 36 % and 12 %.
 
     References
     ----------
@@ -165,8 +190,8 @@ class ScoreGoalEnv(gymnasium.Env[np.ndarray, int]):
         self.world = World(legs=legs, head=head, kick=kick)
         self.ball_trail: list[tuple[float, float]] = []
         self.action_space = spaces.Discrete(len(ACTIONS))  # type: ignore[assignment]
-        low = np.array([-_MOST_ORIENTATION, 0.0], dtype=np.float32)
-        high = np.array([_MOST_ORIENTATION, 1.0], dtype=np.float32)
+        low = np.array([-_MAX_ORIENTATION, 0.0], dtype=np.float32)
+        high = np.array([_MAX_ORIENTATION, 1.0], dtype=np.float32)
         self.observation_space = spaces.Box(low, high, dtype=np.float32)
         self._frames: list[np.ndarray] = []
         if render_mode == "rgb_array_list":
@@ -175,7 +200,7 @@ class ScoreGoalEnv(gymnasium.Env[np.ndarray, int]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Start an episode; see the class's Start."""
+        """Start an episode; see Starting state above."""
         super().reset(seed=seed)
         self.world.rng = self.np_random
         place = dict(options or {})
@@ -193,7 +218,7 @@ class ScoreGoalEnv(gymnasium.Env[np.ndarray, int]):
         return self._observe(), self._info(False)
 
     def step(self, action: int) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Turn, or kick and see where the ball comes to rest."""
+        """Turn, or kick and wait until the ball is at rest."""
         if action not in (TURN_LEFT, TURN_RIGHT, KICK):
             raise ValueError(f"action must be 0, 1 or 2, got {action!r}")
         if action == KICK:
@@ -208,7 +233,7 @@ class ScoreGoalEnv(gymnasium.Env[np.ndarray, int]):
         return self._observe(), MISS_REWARD if over else 0.0, over, False, self._info(False)
 
     def render(self) -> np.ndarray | list[np.ndarray] | None:  # type: ignore[override]
-        """Draw the field from above, with the ball's way after a kick."""
+        """Draw the field from above, with the ball's path after a kick."""
         if self.render_mode is None:
             gymnasium.logger.warn("render() draws only with render_mode='rgb_array'")
             return None
@@ -222,20 +247,20 @@ class ScoreGoalEnv(gymnasium.Env[np.ndarray, int]):
         return bird_view(self.world, ball_trail=self.ball_trail)
 
     def _film(self) -> None:
-        """Keep a picture of the kick, `render_fps` of them a second."""
+        """Add a picture of the kick to the film, `render_fps` of them per second."""
         if self.world.time >= self._next_frame:
             self._frames.append(self._picture())
             self._next_frame = self.world.time + 1 / self.metadata["render_fps"]
 
     def _observe(self) -> np.ndarray:
-        """Look; if the picture cuts the goal, turn the head to it and look again."""
+        """Look; if only a part of the goal is in the picture, pan the head to it and look again."""
         seen = self.camera.goal(self.world)
         if seen is not None and not seen.whole:
             motion.look(self.world, seen.orientation)
             seen = self.camera.goal(self.world) or seen
         if seen is None:
             return np.zeros(2, dtype=np.float32)
-        orientation = max(-_MOST_ORIENTATION, min(_MOST_ORIENTATION, seen.orientation))
+        orientation = max(-_MAX_ORIENTATION, min(_MAX_ORIENTATION, seen.orientation))
         return np.array([orientation, 1.0], dtype=np.float32)
 
     def _info(self, is_success: bool) -> dict[str, Any]:

@@ -1,7 +1,7 @@
-"""Other observations of the same tasks: the camera's picture, or the truth.
+"""Other observations of the same tasks: the camera's picture, or the true state.
 
-The tasks tell an agent what the camera made of its picture. With these wrappers, around either
-task, one agent sees the picture itself and another the state that nobody has.
+The observations of the tasks are measurements from the camera's picture. With these wrappers an
+agent gets the picture itself, or the true state, which no real robot knows.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ class PixelObservation(gymnasium.ObservationWrapper, RecordConstructorArgs):
 
     ## Observation space
 
-    ``Box(0, 255, (160, 208, 3), uint8)``, the picture in color; or, with ``classes=True``,
-    ``Box(0, 6, (160, 208), uint8)``, a color class a pixel (an index into
-    `arkaq_edu.field.pitch.PALETTE`).
+    ``Box(0, 255, (160, 208, 3), uint8)``, the picture in color. With ``classes=True``,
+    ``Box(0, 6, (160, 208), uint8)``, the color class of each pixel: an index into
+    `arkaq_edu.field.pitch.PALETTE`.
 
     Parameters
     ----------
     env : gymnasium.Env
         ``BallApproach-v0`` or ``ScoreGoal-v0``.
     classes : bool
-        Whether to give color classes.
+        Whether to return color classes.
 
     References
     ----------
@@ -57,7 +57,7 @@ class PixelObservation(gymnasium.ObservationWrapper, RecordConstructorArgs):
         )
 
     def observation(self, observation: Any) -> np.ndarray:
-        """Return the picture, whatever was made of it."""
+        """Return the picture instead of the measurements."""
         task: Any = self.unwrapped
         return (task.camera.colors if self.classes else task.camera.picture)(task.world)
 
@@ -96,7 +96,7 @@ class FullState(gymnasium.ObservationWrapper, RecordConstructorArgs):
         self.observation_space = spaces.Box(-high, high, dtype=np.float32)
 
     def observation(self, observation: Any) -> np.ndarray:
-        """Return the state, whatever was seen of it."""
+        """Return the true state instead of the measurements."""
         world = self.unwrapped.world  # type: ignore[attr-defined]
         x, y, heading = world.pose
         heading = math.remainder(heading, 2 * math.pi)
