@@ -457,6 +457,33 @@ class Camera:
         """
         return pitch.PALETTE[self.colors(world)]
 
+    def pixel(
+        self, world: World, distance: float, orientation: float, height: float
+    ) -> tuple[float, float]:
+        """Return column and row at which something shows in a picture taken now.
+
+        Parameters
+        ----------
+        world : World
+            The field as it is now.
+        distance, orientation : float
+            Place of the thing, from the robot's body (mm, rad).
+        height : float
+            Its height above the carpet (mm).
+
+        Examples
+        --------
+        >>> from arkaq_edu.field import World
+        >>> camera = Camera(tilt=0.0)
+        >>> camera.pixel(World(rng=0), 1000.0, 0.0, camera.height)  # straight ahead of the lens
+        (104.0, 80.0)
+        """
+        angle, up = orientation - world.pan, height - self.height
+        ahead, left = distance * math.cos(angle), distance * math.sin(angle)
+        depth = ahead * math.cos(self.tilt) - up * math.sin(self.tilt)
+        rise = ahead * math.sin(self.tilt) + up * math.cos(self.tilt)
+        return WIDTH / 2 - FOCAL_LENGTH * left / depth, HEIGHT / 2 - FOCAL_LENGTH * rise / depth
+
     def distance_error(self, distance: Any, pixels: float = 0.05) -> Any:
         """Return the error of the distance (mm) that an error in the blob's radius causes.
 

@@ -35,6 +35,50 @@ def footsteps(ahead: float, turn: float) -> tuple[float, float]:
     return ahead - half, ahead + half
 
 
+def gait(left: float, right: float) -> tuple[float, float]:
+    """Return how far ahead (mm) and how much to the left (rad) a pair of footsteps (mm) goes.
+
+    Examples
+    --------
+    >>> gait(91.0, 109.0)
+    (100.0, 0.1)
+    """
+    return (left + right) / 2, (right - left) / pitch.ROBOT_WIDTH
+
+
+def arc_path(
+    pose: tuple[float, float, float], left: float, right: float, cycles: int
+) -> NDArray[np.float64]:
+    """Return the path of equal cycles on perfect legs: an arc, or a straight line.
+
+    Parameters
+    ----------
+    pose : tuple of float
+        x, y (mm) and heading (rad) at the start.
+    left, right : float
+        Footsteps of each cycle (mm).
+    cycles : int
+        Number of cycles.
+
+    Returns
+    -------
+    ndarray, shape (8 * cycles + 1, 2)
+        x, y (mm), eight points for each cycle.
+
+    Examples
+    --------
+    >>> arc_path((0.0, 0.0, 0.0), 100.0, 100.0, 2)[-1]
+    array([200.,   0.])
+    """
+    x, y, heading = pose
+    share = np.linspace(0.0, cycles, 8 * cycles + 1)
+    ahead, turn = gait(left, right)
+    # A chord over an angle a is sin(a / 2) / (a / 2) times as long as its arc.
+    chord = share * ahead * np.sinc(share * turn / 2 / math.pi)
+    angle = heading + share * turn / 2
+    return np.column_stack([x + chord * np.cos(angle), y + chord * np.sin(angle)])
+
+
 def walk(world: World, distance: float) -> None:
     """Walk straight ahead (mm), or back if `distance` is negative."""
     arc(world, distance, 0.0)

@@ -1,4 +1,4 @@
-"""Sliders above a canvas: what every explorer of the course is made of."""
+"""Explorers: controls above a canvas that follows them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from arkaq_edu.widgets.scene import PNG_WIDTH, Scene
 
 
 def wide(label: str = "9em") -> dict[str, Any]:
-    """Return how sliders look that stand below each other: `label` is the room for their words.
+    """Return the layout of sliders below each other; `label` is the width of their descriptions.
 
     Examples
     --------
@@ -28,21 +28,21 @@ def wide(label: str = "9em") -> dict[str, Any]:
 
 
 class CanvasView(anywidget.AnyWidget):
-    """A canvas in the browser that draws the scene it was last shown, and tells of the pointer.
+    """A canvas in the browser that draws a scene and reports drags and arrow keys.
 
     Attributes
     ----------
     scene, numbers : dict, bytes
-        What it draws, as `Scene.pack` makes it.
+        What it draws, as `Scene.pack` returns it.
     draggable : list of int
-        The panels on which a drag may begin; without any the canvas takes no input.
+        The panels on which a drag may begin; if there are none, the canvas takes no input.
     drag : dict
-        The newest drag, or an empty dict: its ``number``, the ``panel``, where it came ``from`` and
-        has come ``to``, in the units of the panel's axes, and the ``phase``: "begin", "move" or
-        "end". The browser tells of it once a frame at most, and while the kernel is busy only the
-        newest word waits; so no phase but the last is sure to arrive.
+        The newest drag, or an empty dict: its ``number``, the ``panel``, where it began (``from``)
+        and where it is now (``to``), in the units of the panel's axes, and its ``phase``: "begin",
+        "move" or "end". The browser reports at most once per frame. While the kernel is busy only
+        the newest report waits, so only the last phase is certain to arrive.
     arrows : tuple of two int
-        How often the arrow keys were pressed: right less left, up less down.
+        How often the arrow keys were pressed: right minus left, up minus down.
 
     Examples
     --------
@@ -62,33 +62,33 @@ class CanvasView(anywidget.AnyWidget):
     arrows = traitlets.Tuple((0, 0)).tag(sync=True)
 
     def show(self, scene: Scene) -> None:
-        """Draw `scene`; it travels to the browser in one message."""
+        """Draw `scene`; it is sent to the browser in one message."""
         layout, numbers = scene.pack()
         with self.hold_sync():
             self.scene, self.numbers = layout, numbers
 
 
 class Buttons(ipywidgets.HBox):
-    """A row of buttons that remember what was pressed, for an explorer that goes step by step.
+    """A row of buttons that remember the presses, for an explorer that goes step by step.
 
     Parameters
     ----------
     names : sequence of str
-        A button each.
+        One button each.
     start_again : str
-        The last button, which forgets all presses.
+        The name of a last button, which forgets all presses.
     value : sequence of str
-        What has been pressed at first.
+        The presses at the beginning.
 
     Attributes
     ----------
     value : tuple of str
-        The names pressed so far, in their order. Setting it is as good as pressing.
+        The names pressed so far, in order. Setting it does the same as pressing.
 
     Raises
     ------
     ValueError
-        If a press is none of the names.
+        If a press is not one of the names.
 
     Examples
     --------
@@ -117,33 +117,38 @@ class Buttons(ipywidgets.HBox):
 
     def press(self, name: str) -> None:
         """Do what a click on the button of that name does."""
-        self.value = () if name == self.start_again else (*self.value, name)
+        self.value = () if name == self.start_again else (*self.value, self.record(name))
+
+    def record(self, name: str) -> Any:
+        """Return what to remember of a press: its name, or a tuple that begins with it."""
+        return name
 
     @traitlets.validate("value")
-    def _known(self, proposal: Any) -> tuple[str, ...]:
-        for name in proposal["value"]:
+    def _known(self, proposal: Any) -> tuple[Any, ...]:
+        for press in proposal["value"]:
+            name = press if isinstance(press, str) else press[0]
             if name not in self.names:
                 raise ValueError(f"name must be one of {', '.join(self.names)}, got {name!r}")
         return tuple(proposal["value"])
 
 
 class Drag(ipywidgets.VBox):
-    """One slider or two that a drag over the picture moves too, and the arrow keys on it.
+    """One or two sliders that also follow a drag on the canvas, and its arrow keys.
 
     Parameters
     ----------
     x, y : ipywidgets.FloatSlider or IntSlider, optional
-        What the pointer moves across and upward; one of them may be missing.
+        The sliders that the pointer moves across and upward; one of them may be missing.
     panel : int
-        On which panel a drag may begin.
+        The panel on which a drag may begin.
     gain : tuple of two float, optional
-        How far the sliders go for each unit of the panel's axes. Where it is None, they go to where
-        the pointer is.
+        How far the sliders move for each unit of the panel's axes. If it is None, they move to
+        where the pointer is.
 
     Attributes
     ----------
     value : float, or tuple of two float
-        Of the slider, or of both. Setting it is as good as dragging.
+        The value of the slider, or of both. Setting it does the same as dragging.
 
     Examples
     --------
@@ -178,7 +183,7 @@ class Drag(ipywidgets.VBox):
         self.observe(self._spread, names="value")
 
     def follow(self, view: CanvasView) -> None:
-        """Let drags and arrow keys on that canvas move the sliders."""
+        """Let drags and arrow keys on a canvas move the sliders."""
         view.draggable = [*view.draggable, self.panel]
         view.observe(self._dragged, names="drag")
         view.observe(self._stepped, names="arrows")
@@ -197,7 +202,7 @@ class Drag(ipywidgets.VBox):
         if view.drag.get("panel", view.draggable[0]) != self.panel:
             return
         keys = np.subtract(change["new"], change["old"])
-        if len(self.children) == 1:  # one slider takes all four keys, as sliders do
+        if len(self.children) == 1:  # a single slider takes all four keys, as sliders do
             keys[:] = keys.sum()
         steps = np.array([slider.step if slider else 0.0 for slider in self._pair])
         self._go(self._place() + steps * keys * (1 if self.gain is None else np.sign(self.gain)))
@@ -206,7 +211,7 @@ class Drag(ipywidgets.VBox):
         return np.array([slider.value if slider else 0.0 for slider in self._pair])
 
     def _go(self, place: NDArray[np.float64]) -> None:
-        """Move each slider to the stop next to its place, and tell of both at once."""
+        """Move each slider to the stop nearest to its place, and report both at once."""
         with self.hold_trait_notifications():
             for slider, target in zip(self._pair, place.tolist(), strict=True):
                 if slider:
@@ -226,15 +231,15 @@ class Drag(ipywidgets.VBox):
 
 
 class Explorer(ipywidgets.VBox):
-    """Controls above a canvas that is drawn anew whenever one of them moves.
+    """Controls above a canvas that is drawn again whenever one of them moves.
 
-    In a notebook without a kernel it is a picture and the fact which the picture states.
+    In a stored notebook without a kernel it is a picture and the fact that the picture states.
 
     Parameters
     ----------
     draw : callable
-        Takes the values of the controls by name, returns a `Scene`. A plain function, so that it
-        can be tested without a browser.
+        Takes the values of the controls by name and returns a `Scene`. It is a plain function, so
+        it can be tested without a browser.
     **controls : ipywidgets widget
         Widgets with a ``value``: sliders, menus, `Buttons`, `Drag`.
 
@@ -245,9 +250,9 @@ class Explorer(ipywidgets.VBox):
     controls : dict
         The controls by name.
     drawn : Scene
-        What the canvas shows.
+        The scene on the canvas.
     error : Exception or None
-        What went wrong when a control last moved; it is shown under the canvas too.
+        The error of the last redrawing; it is also shown below the canvas.
 
     Examples
     --------
@@ -281,7 +286,7 @@ class Explorer(ipywidgets.VBox):
         try:
             self._redraw()
             self.error, self._message.value = None, ""
-        except Exception as error:  # a callback's exception would vanish in the kernel's log
+        except Exception as error:  # in a callback it would vanish in the kernel's log
             self.error = error
             words = html.escape(f"{type(error).__name__}: {error}")
             self._message.value = f'<div role="alert" style="color: #b00020">{words}</div>'

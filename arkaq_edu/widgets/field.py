@@ -1,4 +1,4 @@
-"""The control panel of chapter 8: footsteps, head and paw by hand, under the robot's eye and above.
+"""The control panel of chapter 8: footsteps, head and paw by hand, with the robot's view and ours.
 
 References
 ----------
@@ -9,36 +9,34 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import ipywidgets
-import numpy as np
-import traitlets
-from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
-from arkaq_edu.field import Camera, GoalSighting, GoalSupervisor, Sighting, World, bird_view, pitch
+from arkaq_edu.field import Camera, GoalSighting, GoalSupervisor, Sighting, World, bird_view, motion
 from arkaq_edu.field.camera import FOCAL_LENGTH, HEIGHT, WIDTH
+from arkaq_edu.field.pitch import BALL_RADIUS
 from arkaq_edu.field.view import EXTENT
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.widgets.explorer import Buttons, Explorer, wide
 from arkaq_edu.widgets.scene import Layer, Line, Panel, Picture, Points, Scene, Text
 
-#: The names on the buttons.
-DEEDS = ("step", "5 steps", "wait 0.1 s", "ball to the paw", "kick")
+#: The names of the buttons.
+BUTTONS = ("step", "5 steps", "wait 0.1 s", "ball to the paw", "kick")
 ROBOT, BALL = (300.0, -800.0, 0.25), (1400.0, -300.0)  # where they are at first
-LONGEST = 190  # mm: where the sliders of the strides end
+MAX_STRIDE = 190  # mm: the end of the sliders
 EXPOSURE = 1 / 30  # s: how long a picture gathers light
 
-_STEPS = {"step": 1, "5 steps": 5}
-_WAIT = 0.1
+_CYCLES = {"step": 1, "5 steps": 5}
+_WAIT = 0.1  # s
 _AHEAD = 5  # cycles that the dashed line shows
 _BLUE = "#1b4f8f"
-_WIDE = wide("11em")
+_FAR = 3000.0  # mm: any distance does, because the goal's middle is shown at the camera's height
 
 
-class Deed(NamedTuple):
-    """A press: the button's name, and where the sliders stood (mm, mm, rad)."""
+class Press(NamedTuple):
+    """A press of a button: its name, and the values of the sliders (mm, mm, rad)."""
 
     name: str
     left: float
@@ -46,161 +44,141 @@ class Deed(NamedTuple):
     head: float
 
 
-class Deeds(Buttons):
-    """Buttons that remember with every press where the sliders stood.
+class Presses(Buttons):
+    """Buttons that also remember the values of the sliders at each press.
 
     Parameters
     ----------
     sliders : sequence of ipywidgets widget
-        Of the left stride, the right stride and the head.
+        For the left stride, the right stride and the head.
 
     Attributes
     ----------
-    value : tuple of Deed
-        What has been done so far. Setting it is as good as pressing.
+    value : tuple of Press
+        The presses so far. Setting it does the same as pressing.
 
     Examples
     --------
-    >>> deeds = Deeds([ipywidgets.IntSlider(value, max=190) for value in (90, 110, 0)])
-    >>> deeds.press("step")
-    >>> deeds.value
-    (Deed(name='step', left=90, right=110, head=0),)
+    >>> presses = Presses([ipywidgets.IntSlider(value, max=190) for value in (90, 110, 0)])
+    >>> presses.press("step")
+    >>> presses.value
+    (Press(name='step', left=90, right=110, head=0),)
     """
 
     def __init__(self, sliders: Sequence[ipywidgets.DOMWidget]) -> None:
         self._sliders = tuple(sliders)
-        super().__init__(DEEDS)
+        super().__init__(BUTTONS)
 
-    def press(self, name: str) -> None:
-        """Do what a click on the button of that name does."""
-        if name == self.start_again:
-            self.value = ()
-        else:
-            self.value = (*self.value, Deed(name, *(slider.value for slider in self._sliders)))
-
-    @traitlets.validate("value")
-    def _known(self, proposal: Any) -> tuple[Deed, ...]:
-        deeds = tuple(Deed(*deed) for deed in proposal["value"])
-        for deed in deeds:
-            if deed.name not in DEEDS:
-                raise ValueError(f"name must be one of {', '.join(DEEDS)}, got {deed.name!r}")
-        return deeds
+    def record(self, name: str) -> Press:
+        """Return the press of a button, with the sliders as they are now."""
+        return Press(name, *(slider.value for slider in self._sliders))
 
 
 class Drive:
-    """A world driven by deeds; the same deeds lead to the same world, to the last bit.
+    """A world driven by presses; the same presses lead to exactly the same world.
 
-    It goes on from where it is when deeds are added, and begins anew when they are others.
+    If presses are added, it continues from where it is. If they differ, it begins again.
 
     Parameters
     ----------
     seed : int
-        What all luck comes from: of the footsteps, of the ball before a kick, of its way.
+        Seed of all randomness: footsteps, the ball's place before a kick, the ball's path.
 
     Attributes
     ----------
     world : World
-        The field as the deeds have left it.
-    told : str
-        What became of the last deed, if there is something to tell.
+        The field after the presses.
+    message : str
+        The outcome of the last press, if there is something to say.
     trail, ball_trail : list of (x, y)
-        Where the robot has been, and where the last kick drove the ball (mm).
+        The path of the robot, and the path of the ball after the last kick (mm).
 
     Examples
     --------
     >>> drive = Drive(seed=0)
-    >>> drive.do([Deed("kick", 0, 0, 0)])  # the ball is a meter away
-    >>> drive.told
+    >>> drive.follow([Press("kick", 0, 0, 0)])  # the ball is a meter away
+    >>> drive.message
     'the paw met no ball'
     """
 
     def __init__(self, seed: int = 0) -> None:
-        self.seed = seed
-        self.camera = Camera()
-        # It sets the ball and judges; how far off it would place the robot does not matter.
+        self.seed, self.camera = seed, Camera()
+        # It only places the ball and judges, so its distance does not matter.
         self.supervisor = GoalSupervisor(distance=2000.0)
         self._begin()
 
     def _begin(self) -> None:
         self.world = World(rng=self.seed)
         self.world.reset(ROBOT, BALL)
-        self.deeds: tuple[Deed, ...] = ()
-        self.head, self.told = 0.0, ""
+        self.presses: tuple[Press, ...] = ()
+        self.head, self.message = 0.0, ""
         self.trail: list[tuple[float, float]] = [ROBOT[:2]]
         self.ball_trail: list[tuple[float, float]] = []
-        self._look()
+        self._take_pictures()
 
-    def do(self, deeds: Sequence[Deed]) -> None:
-        """Bring the world to where these deeds lead."""
-        if self.deeds == tuple(deeds):
+    def follow(self, presses: Sequence[Press]) -> None:
+        """Bring the world to where these presses lead."""
+        presses = tuple(Press(*press) for press in presses)
+        if presses == self.presses:
             return
-        if self.deeds != tuple(deeds[: len(self.deeds)]):
+        if self.presses != presses[: len(self.presses)]:
             self._begin()
-        for deed in deeds[len(self.deeds) :]:
-            self._do(deed)
-        self.deeds = tuple(deeds)
-        self._look()
+        for press in presses[len(self.presses) :]:
+            self._act(press)
+        self.presses = presses
+        self._take_pictures()
 
-    def _do(self, deed: Deed) -> None:
-        world, self.told = self.world, ""
-        if deed.head != self.head:
-            self.head = deed.head
-            world.look(deed.head)
-        for _ in range(_STEPS.get(deed.name, 0)):
-            world.cycle(deed.left, deed.right)
+    def _act(self, press: Press) -> None:
+        world, self.message = self.world, ""
+        if press.head != self.head:
+            self.head = press.head
+            world.look(press.head)
+        for _ in range(_CYCLES.get(press.name, 0)):
+            world.cycle(press.left, press.right)
             self.trail.append(world.pose[:2])
-        if deed.name == "wait 0.1 s":
+        if press.name == "wait 0.1 s":
             world.stand(_WAIT)
-        elif deed.name == "ball to the paw":
+        elif press.name == "ball to the paw":
             self.ball_trail = []
             try:
                 self.supervisor.set_ball(world)
-            except ValueError:  # the robot has its nose at the wall
-                self.told = "no room for the ball before the paw"
-        elif deed.name == "kick":
-            self._kick()
+            except ValueError:  # the robot faces the wall
+                self.message = "no room for the ball before the paw"
+        elif press.name == "kick":
+            self.ball_trail = world.swing_paw()
+            rolled = math.dist(self.ball_trail[0], self.ball_trail[-1])
+            goal = "a goal" if self.supervisor.judge(world).is_success else "no goal"
+            self.message = f"kicked {rolled:,.0f} mm, {goal}" if rolled else "the paw met no ball"
 
-    def _kick(self) -> None:
-        self.ball_trail = self.world.swing_paw()
-        rolled = math.dist(self.ball_trail[0], self.ball_trail[-1])
-        scored = self.supervisor.judge(self.world).is_success
-        self.told = f"kicked {rolled:,.0f} mm{', a goal' if scored else ', no goal'}"
-        if rolled == 0.0:
-            self.told = "the paw met no ball"
-
-    def _look(self) -> None:
+    def _take_pictures(self) -> None:
         self.picture = self.camera.picture(self.world)
         self.above = bird_view(self.world, 480, self.trail, ball_trail=self.ball_trail)
 
-    def draw(self, left: float, right: float, head: float, deeds: Sequence[Deed]) -> Scene:
-        """Return the picture: what the camera shows on the left, the field from above beside it.
+    def draw(self, left: float, right: float, head: float, presses: Sequence[Press]) -> Scene:
+        """Return the scene: the camera's picture, and the field from above beside it.
 
         Parameters
         ----------
         left, right : float
-            The strides that the next step would take (mm).
+            The strides of the next step (mm).
         head : float
-            Where the head is to point (rad, to the left).
-        deeds : sequence of Deed
-            What has been done so far.
-
-        Returns
-        -------
-        Scene
+            Where the head will point (rad, to the left).
+        presses : sequence of Press
+            The presses so far.
         """
-        self.do(deeds)
-        world = self.world
-        moving = head != self.head or self.camera.blurred(world)
-        ball = None if moving else self.camera.sighting(world)
-        goal = None if moving else self.camera.goal(world)
-        ahead, turn = (left + right) / 2, (right - left) / pitch.ROBOT_WIDTH
-        sights, step = self._sights(moving, ball, goal), f"next {ahead:+.0f} mm, {turn:+.2f} rad"
-        # After a kick there is no room for the next step; the dashed line shows it all the same.
-        fact = f"{self.told}; {sights}" if self.told else f"{sights}; {step}"
-        return Scene(_proper(fact), [self._eye(moving, ball, goal), self._above(left, right, ball)])
+        self.follow(presses)
+        moving = head != self.head or self.camera.blurred(self.world)
+        ball = None if moving else self.camera.sighting(self.world)
+        goal = None if moving else self.camera.goal(self.world)
+        sights = self._describe(moving, ball, goal)
+        ahead, turn = motion.gait(left, right)
+        # After a kick there is no room for the next step; the dashed line shows it anyway.
+        step = f"{sights}; next {ahead:+.0f} mm, {turn:+.2f} rad"
+        fact = f"{self.message}; {sights}" if self.message else step
+        return Scene(_minus(fact), [self._eye(moving, ball, goal), self._field(left, right, ball)])
 
-    def _sights(self, moving: bool, ball: Sighting | None, goal: GoalSighting | None) -> str:
-        """Say what is seen beside what is true."""
+    def _describe(self, moving: bool, ball: Sighting | None, goal: GoalSighting | None) -> str:
+        """Say what is seen, and what is true."""
         distance, orientation = self.world.ball_from_robot()
         middle, _ = self.world.goal_from_robot()
         if moving:
@@ -213,51 +191,40 @@ class Drive:
         return f"{near} (true {distance:,.0f}, {orientation:+.3f}); {far} (true {middle:+.3f})"
 
     def _eye(self, moving: bool, ball: Sighting | None, goal: GoalSighting | None) -> Panel:
-        """Return the camera's picture, with a mark where the ball, and the goal, was measured."""
+        """Return the camera's picture, with marks where ball and goal were measured."""
         picture, title = self.picture, "what the camera sees"
         if moving:
-            # While a picture gathers light, the head turns on by so many pixels.
+            # While a picture gathers light, the head turns by this many pixels.
             smear = round(self.world.head.speed * FOCAL_LENGTH * EXPOSURE)
             picture, title = uniform_filter1d(picture, smear, axis=1), "the head moves"
-        layers: list[Layer] = [
-            Picture(picture, (0, WIDTH, 0, HEIGHT), smooth=False),
-            Text(0, HEIGHT + 9, title),
-        ]
-        marks = []
+        marks: list[Layer] = []
+        names = []
         if ball:
-            x, y = self._pixel(ball.orientation, ball.distance, pitch.BALL_RADIUS)
-            layers.append(Points([x], [y], 9.0, hollow=True))
-            marks.append("ring: the ball")
+            col, row = self.camera.pixel(self.world, *ball, BALL_RADIUS)
+            marks.append(Points([col], [HEIGHT - row], 9.0, hollow=True))
+            names.append("ring: the ball")
         if goal:
-            x, y = self._pixel(goal.orientation, 3000.0, self.camera.height)
-            if 0 <= x <= WIDTH:  # else the goal is so far cut that its middle is out of view
-                layers.append(Line([x, x], [y - 9, y + 9], _BLUE, 2.5))
-                marks.append("bar: the goal's middle")
-        if marks:
-            layers.append(Text(0, -9, ", ".join([*marks, "as measured"]), style.QUIET))
-        ends = (0.0, WIDTH + 8.0), (-18.0, HEIGHT + 18.0)
-        return Panel("", "", *ends, layers, bare=True)
+            col, row = self.camera.pixel(self.world, _FAR, goal.orientation, self.camera.height)
+            if 0 <= col <= WIDTH:  # the middle of a goal that is mostly cut off is out of view
+                marks.append(Line([col, col], [HEIGHT - row - 9, HEIGHT - row + 9], _BLUE, 2.5))
+                names.append("bar: the goal's middle")
+        if names:
+            marks.append(Text(0, -9, ", ".join([*names, "as measured"]), style.QUIET))
+        pixels = Picture(picture, (0, WIDTH, 0, HEIGHT), smooth=False)
+        layers: list[Layer] = [pixels, Text(0, HEIGHT + 9, title), *marks]
+        return Panel("", "", (0.0, WIDTH + 8.0), (-18.0, HEIGHT + 18.0), layers, bare=True)
 
-    def _pixel(self, orientation: float, distance: float, height: float) -> tuple[float, float]:
-        """Return where in the picture something shows, counted from the lower left corner."""
-        camera, angle = self.camera, orientation - self.world.pan
-        forth, up = distance * math.cos(angle), height - camera.height
-        depth = forth * math.cos(camera.tilt) - up * math.sin(camera.tilt)
-        rise = forth * math.sin(camera.tilt) + up * math.cos(camera.tilt)
-        aside = distance * math.sin(angle)
-        return WIDTH / 2 - FOCAL_LENGTH * aside / depth, HEIGHT / 2 + FOCAL_LENGTH * rise / depth
-
-    def _above(self, left: float, right: float, ball: Sighting | None) -> Panel:
-        """Return the field from above, with the steps to come and the ball where it was seen."""
+    def _field(self, left: float, right: float, ball: Sighting | None) -> Panel:
+        """Return the field from above, with the next steps, and the ball where it was seen."""
         x, y, heading = self.world.pose
-        way = _arc((x, y, heading), left, right)
+        path = motion.arc_path(self.world.pose, left, right, _AHEAD)
         words = f"x {x:,.0f} mm, y {y:,.0f} mm, heading {heading:+.2f} rad, {self.world.time:.1f} s"
         layers: list[Layer] = [
             Picture(self.above, EXTENT),
-            Line(way[:, 0], way[:, 1], "white", 2.0, dashed=True),
-            Points(way[-1:, 0], way[-1:, 1], 3.5, "white"),
+            Line(path[:, 0], path[:, 1], "white", 2.0, dashed=True),
+            Points(path[-1:, 0], path[-1:, 1], 3.5, "white"),
             Text(-3000, 2170, f"from above; dashed: {_AHEAD} such steps without a drift"),
-            Text(-3000, -2170, _proper(words), style.QUIET),
+            Text(-3000, -2170, _minus(words), style.QUIET),
             Line([-2880, -2880, -2480], [-1480, -1880, -1880], "white"),
             Text(-2420, -1880, "x", "white"),
             Text(-2880, -1390, "y", "white", "center"),
@@ -272,20 +239,20 @@ class Drive:
 def control_panel(seed: int = 0) -> Explorer:
     """Return sliders for both strides and the head, and buttons, above what the robot sees.
 
-    The dashed line is where five steps of these strides would lead legs without a drift. A hollow
-    ring is where the camera's pixels put the ball, in its picture and on the field; a blue bar is
-    the middle of the goal. While the head moves there is neither.
+    The dashed line is the path of five such steps on legs without a drift. A hollow ring marks
+    where the camera measured the ball, in its picture and on the field; a blue bar marks the
+    middle of the goal. While the head moves there is neither.
 
     Parameters
     ----------
     seed : int
-        Other luck: of the footsteps, and of the kicks.
+        Seed of all randomness: footsteps and kicks.
 
     Returns
     -------
     Explorer
         Its controls are ``controls["left"]`` and ``controls["right"]`` (mm), ``controls["head"]``
-        (rad), and the buttons ``controls["deeds"]``.
+        (rad), and the buttons ``controls["presses"]``.
 
     References
     ----------
@@ -295,33 +262,23 @@ def control_panel(seed: int = 0) -> Explorer:
     --------
     >>> panel = control_panel()
     >>> panel.controls["left"].value = 80
-    >>> panel.controls["deeds"].press("step")
+    >>> panel.controls["presses"].press("step")
     >>> panel.drawn.fact.split("; ")[-1]
     'next +90 mm, +0.11 rad'
     """
-    strides = [
+    look = wide("11em")
+    left, right = (
         ipywidgets.IntSlider(
-            100, min=-LONGEST, max=LONGEST, step=10, description=f"{side} stride (mm)", **_WIDE
+            100, min=-MAX_STRIDE, max=MAX_STRIDE, step=10, description=f"{side} stride (mm)", **look
         )
         for side in ("left", "right")
-    ]
-    head = ipywidgets.FloatSlider(
-        0.0, min=-1.5, max=1.5, step=0.1, description="head to the left (rad)", **_WIDE
     )
-    left, right = strides
-    deeds = Deeds([left, right, head])
-    return Explorer(Drive(seed).draw, left=left, right=right, head=head, deeds=deeds)
+    head = ipywidgets.FloatSlider(
+        0.0, min=-1.5, max=1.5, step=0.1, description="head to the left (rad)", **look
+    )
+    presses = Presses([left, right, head])
+    return Explorer(Drive(seed).draw, left=left, right=right, head=head, presses=presses)
 
 
-def _arc(pose: tuple[float, float, float], left: float, right: float) -> NDArray[np.float64]:
-    """Return the way of steps without a drift (mm): an arc, or a straight line."""
-    x, y, heading = pose
-    share = np.linspace(0.0, _AHEAD, 41)
-    ahead, turn = (left + right) / 2, (right - left) / pitch.ROBOT_WIDTH
-    chord = share * ahead * np.sinc(share * turn / 2 / math.pi)
-    angle = heading + share * turn / 2
-    return np.column_stack([x + chord * np.cos(angle), y + chord * np.sin(angle)])
-
-
-def _proper(words: str) -> str:
+def _minus(words: str) -> str:
     return words.replace("-", "−")

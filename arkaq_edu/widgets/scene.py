@@ -1,7 +1,10 @@
-"""A picture as data: panels with axes, layers on the panels, and the fact that it states.
+"""A picture as data: panels with axes, layers on the panels, and the fact that the picture states.
 
-A scene is drawn twice: by the browser on a canvas while a kernel runs, and by matplotlib into the
-PNG that a stored notebook shows without one. Both painters know the same few layers.
+A scene is drawn in two ways. While a kernel runs, the browser draws it on a canvas (canvas.js).
+For a stored notebook without a kernel, matplotlib draws it into a PNG. Both know the same layers.
+
+The browser needs two things of a layer: its `look`, which travels as JSON, and its `numbers`,
+which travel as float32. `paint` draws the layer with matplotlib.
 
 Examples
 --------
@@ -16,7 +19,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, ClassVar
 
 import numpy as np
@@ -30,15 +33,91 @@ from PIL import Image
 
 from arkaq_edu.figures.drawing import style
 
-PNG_WIDTH = 760  # what a stored picture takes of the page, in pixels of the page
+PNG_WIDTH = 760  # width of a stored picture on the page (pixels)
+_POINTS = 0.75  # in a pixel of the page
+
+
+class _Marks:
+    """What layers at points `x`, `y` have in common."""
+
+    x: Any
+    y: Any
+
+    def look(self) -> dict[str, Any]:
+        """Return everything but the points."""
+        names = (field.name for field in fields(self))  # type: ignore[arg-type]
+        return {name: getattr(self, name) for name in names if name not in ("x", "y")}
+
+    def numbers(self) -> NDArray[np.float32]:
+        """Return x and y in turn."""
+        return np.column_stack([self.x, self.y]).astype(np.float32).ravel()
+
+
+@dataclass(frozen=True)
+class Points(_Marks):
+    """Round marks: filled if we computed them, hollow if they were measured or printed.
+
+    `radius` is in pixels of the page.
+    """
+
+    kind: ClassVar[str] = "points"
+    x: ArrayLike
+    y: ArrayLike
+    radius: float = 3.0
+    color: str = style.INK
+    hollow: bool = False
+
+    def paint(self, ax: Axes) -> None:
+        """Draw with matplotlib."""
+        size = 2 * self.radius * _POINTS
+        if self.hollow:
+            style.measurements(self.x, self.y, ax, color=self.color, markersize=size)
+        else:
+            ax.plot(self.x, self.y, "o", color=self.color, markersize=size, markeredgewidth=0)
+
+
+@dataclass(frozen=True)
+class Line(_Marks):
+    """A line through points; a NaN in x and y interrupts it.
+
+    `width` is in pixels of the page.
+    """
+
+    kind: ClassVar[str] = "line"
+    x: ArrayLike
+    y: ArrayLike
+    color: str = style.INK
+    width: float = 1.5
+    dashed: bool = False
+
+    def paint(self, ax: Axes) -> None:
+        """Draw with matplotlib."""
+        dash = "--" if self.dashed else "-"
+        ax.plot(self.x, self.y, dash, color=self.color, linewidth=self.width * _POINTS)
+
+
+@dataclass(frozen=True)
+class Text(_Marks):
+    """Words that begin at a point, or are centered on it if `align` is "center"."""
+
+    kind: ClassVar[str] = "text"
+    x: float
+    y: float
+    text: str
+    color: str = style.INK
+    align: str = "left"
+
+    def paint(self, ax: Axes) -> None:
+        """Draw with matplotlib."""
+        ax.text(self.x, self.y, self.text, color=self.color, va="center", ha=self.align, fontsize=9)
 
 
 @dataclass(frozen=True)
 class Cells:
-    """Polygons, each filled with a color of `palette`, seen through a window of the panel.
+    """Polygons, each filled with a color of `palette`, clipped to a window of the panel.
 
     `within` is that window: left, right, bottom, top, in the units of the axes. `border` is the
-    width of the white lines between them, in points; by default it goes with their number.
+    width of the white lines between the polygons (points); by default it depends on their number.
     """
 
     kind: ClassVar[str] = "cells"
@@ -49,109 +128,31 @@ class Cells:
     border: float | None = None
 
     def look(self) -> dict[str, Any]:
-        """Return all but the numbers."""
+        """Return everything but the polygons."""
         border = style.border_width(len(self.polygons)) if self.border is None else self.border
         return {"palette": list(self.palette), "within": self.within, "border": border}
 
     def numbers(self) -> NDArray[np.float32]:
-        """Return how many polygons, their sizes, their colors, their corners."""
+        """Return the number of polygons, their sizes, their colors, their corners."""
         sizes = [len(polygon) for polygon in self.polygons]
         corners = np.concatenate([np.ravel(polygon) for polygon in self.polygons])
         return np.concatenate([[len(sizes)], sizes, self.colors, corners]).astype(np.float32)
 
     def paint(self, ax: Axes) -> None:
         """Draw with matplotlib."""
-        look = self.look()
         area = style.cells(self.polygons, [self.palette[color] for color in self.colors], ax)
-        area.set(linewidth=look["border"], zorder=2)  # as lines: what comes later lies above
+        area.set(linewidth=self.look()["border"], zorder=2)  # as lines: later layers lie above
         left, right, bottom, top = self.within
         window = Rectangle((left, bottom), right - left, top - bottom, transform=ax.transData)
         area.set_clip_path(window)
 
 
 @dataclass(frozen=True)
-class Points:
-    """Round marks: filled for what we computed, hollow for what was measured or printed."""
-
-    kind: ClassVar[str] = "points"
-    x: ArrayLike
-    y: ArrayLike
-    radius: float = 3.0
-    color: str = style.INK
-    hollow: bool = False
-
-    def look(self) -> dict[str, Any]:
-        """Return all but the numbers."""
-        return {"radius": self.radius, "color": self.color, "hollow": self.hollow}
-
-    def numbers(self) -> NDArray[np.float32]:
-        """Return x and y, in turn."""
-        return np.column_stack([self.x, self.y]).astype(np.float32).ravel()
-
-    def paint(self, ax: Axes) -> None:
-        """Draw with matplotlib."""
-        size = 2 * self.radius * 0.75  # from pixels of the page to points
-        if self.hollow:
-            style.measurements(self.x, self.y, ax, color=self.color, markersize=size)
-        else:
-            ax.plot(self.x, self.y, "o", color=self.color, markersize=size, markeredgewidth=0)
-
-
-@dataclass(frozen=True)
-class Line:
-    """A line through points; where x and y are NaN the pen is lifted."""
-
-    kind: ClassVar[str] = "line"
-    x: ArrayLike
-    y: ArrayLike
-    color: str = style.INK
-    width: float = 1.5
-    dashed: bool = False
-
-    def look(self) -> dict[str, Any]:
-        """Return all but the numbers."""
-        return {"color": self.color, "width": self.width, "dashed": self.dashed}
-
-    def numbers(self) -> NDArray[np.float32]:
-        """Return x and y, in turn."""
-        return np.column_stack([self.x, self.y]).astype(np.float32).ravel()
-
-    def paint(self, ax: Axes) -> None:
-        """Draw with matplotlib."""
-        dash = "--" if self.dashed else "-"
-        ax.plot(self.x, self.y, dash, color=self.color, linewidth=self.width * 0.75)
-
-
-@dataclass(frozen=True)
-class Text:
-    """Words at a point: they begin there, or stand about it where `align` is "center"."""
-
-    kind: ClassVar[str] = "text"
-    x: float
-    y: float
-    text: str
-    color: str = style.INK
-    align: str = "left"
-
-    def look(self) -> dict[str, Any]:
-        """Return all but the numbers."""
-        return {"text": self.text, "color": self.color, "align": self.align}
-
-    def numbers(self) -> NDArray[np.float32]:
-        """Return x and y."""
-        return np.array([self.x, self.y], dtype=np.float32)
-
-    def paint(self, ax: Axes) -> None:
-        """Draw with matplotlib."""
-        ax.text(self.x, self.y, self.text, color=self.color, va="center", ha=self.align, fontsize=9)
-
-
-@dataclass(frozen=True)
 class Picture:
-    """Colored pixels, shape (rows, columns, 3), the first row on top, on a window of the panel.
+    """Colored pixels, shape (rows, columns, 3), first row on top, in a window of the panel.
 
-    `within` is that window: left, right, bottom, top, in the units of the axes. Without `smooth`
-    every pixel stays a square of one color, however large it is drawn.
+    `within` is that window: left, right, bottom, top, in the units of the axes. If `smooth` is
+    False, every pixel is drawn as a square of one color.
     """
 
     kind: ClassVar[str] = "picture"
@@ -160,11 +161,11 @@ class Picture:
     smooth: bool = True
 
     def look(self) -> dict[str, Any]:
-        """Return all but the numbers."""
+        """Return everything but the pixels."""
         return {"columns": self.pixels.shape[1], "within": self.within, "smooth": self.smooth}
 
     def numbers(self) -> NDArray[np.float32]:
-        """Return red, green, blue and 255 of each pixel: four bytes, as many as a float32 has."""
+        """Return red, green, blue and 255 of each pixel: four bytes, like a float32."""
         return np.pad(self.pixels, ((0, 0), (0, 0), (0, 1)), constant_values=255).view("f4").ravel()
 
     def paint(self, ax: Axes) -> None:
@@ -178,24 +179,24 @@ Layer = Cells | Points | Line | Text | Picture
 
 @dataclass(frozen=True)
 class Panel:
-    """Axes with units, and what is drawn on them, first layer first.
+    """Axes with units, and the layers on them, the first one at the bottom.
 
     Parameters
     ----------
     xlabel, ylabel : str
-        What runs along the axes, with its unit.
+        The quantity along each axis, with its unit.
     xlim, ylim : tuple of two float
-        Ends of the axes; the first may be the greater.
-    layers : sequence of Cells, Points, Line, Text or Picture
+        Ends of the axes; the first may be greater than the second.
+    layers : sequence of Points, Line, Text, Cells or Picture
         What is drawn.
     log : str
         The axes that are logarithmic: "x", "y" or "xy".
     xticks, yticks : sequence of float, optional
-        Where numbers stand; round ones are chosen where it is None.
+        Positions of the numbers; by default round ones.
     width : float
-        Share of the picture's width.
+        Share of the picture's width, relative to the other panels.
     bare : bool
-        Whether no axes are drawn; then both directions have one scale.
+        Whether to draw no axes; then both directions have the same scale.
     """
 
     xlabel: str
@@ -210,7 +211,7 @@ class Panel:
     bare: bool = False
 
     def ticks(self) -> tuple[list[float], list[float]]:
-        """Return where the numbers of the two axes stand.
+        """Return the positions of the numbers on the two axes.
 
         Examples
         --------
@@ -243,10 +244,13 @@ class Scene:
     panels: Sequence[Panel]
 
     def pack(self) -> tuple[dict[str, Any], bytes]:
-        """Return what the browser's painter takes: a layout, and every number as float32."""
-        parts: list[NDArray[np.float32]] = []
-        panels = []
-        start = 0
+        """Return what the browser needs: a layout, and all numbers as float32.
+
+        The layout says for each layer where its numbers start and how many there are.
+        """
+        names = ("xlabel", "ylabel", "xlim", "ylim", "log", "width", "bare")
+        parts: list[NDArray[np.float32]] = [np.empty(0, np.float32)]
+        panels, start = [], 0
         for panel in self.panels:
             layers = []
             for layer in panel.layers:
@@ -255,19 +259,13 @@ class Scene:
                 layers.append({"kind": layer.kind, **place, **layer.look()})
                 parts.append(numbers)
                 start += len(numbers)
-            axes = {
-                end: [[tick, tick_label(tick)] for tick in ticks]
-                for end, ticks in zip(("xticks", "yticks"), panel.ticks(), strict=True)
-            }
-            names = ("xlabel", "ylabel", "xlim", "ylim", "log", "width", "bare")
-            panels.append(
-                {name: getattr(panel, name) for name in names} | axes | {"layers": layers}
-            )
-        empty = np.empty(0, np.float32)
-        return {"fact": self.fact, "panels": panels}, np.concatenate([empty, *parts]).tobytes()
+            x, y = ([[tick, tick_label(tick)] for tick in ticks] for ticks in panel.ticks())
+            axes = {name: getattr(panel, name) for name in names}
+            panels.append({**axes, "xticks": x, "yticks": y, "layers": layers})
+        return {"fact": self.fact, "panels": panels}, np.concatenate(parts).tobytes()
 
     def png(self) -> bytes:
-        """Return the picture as matplotlib draws it, twice as fine as the page shows it."""
+        """Return the picture as matplotlib draws it, with two pixels for each of the page."""
         figure = Figure(figsize=(PNG_WIDTH / 96, 4.0), dpi=192, layout="constrained")
         widths = [panel.width for panel in self.panels]
         row = figure.subplots(1, len(self.panels), width_ratios=widths, squeeze=False)[0]
@@ -278,7 +276,7 @@ class Scene:
         canvas.draw()
         picture = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
         file = io.BytesIO()
-        # A quarter of the bytes, and no eye sees it: these pictures have few colors.
+        # These pictures have few colors: a palette takes a quarter of the bytes and looks the same.
         picture.quantize(128, dither=Image.Dither.NONE).save(file, "PNG", optimize=True)
         return file.getvalue()
 
@@ -290,7 +288,7 @@ def between(
     within: tuple[float, float, float, float],
     color: str,
 ) -> Cells:
-    """Return the area between two curves, seen through a window as `Cells` is.
+    """Return the area between two curves, clipped to a window as in `Cells`.
 
     Examples
     --------
@@ -303,7 +301,7 @@ def between(
 
 
 def tick_label(value: float) -> str:
-    """Return a tick's number as it is printed beside the axis.
+    """Return the number of a tick as it is written beside the axis.
 
     Examples
     --------

@@ -9,7 +9,7 @@ import pytest
 from arkaq_edu.field import Camera, GoalSupervisor, Legs, World, pitch
 from arkaq_edu.field.head import Head
 from arkaq_edu.widgets import control_panel
-from arkaq_edu.widgets.field import BALL, DEEDS, ROBOT, Deed, Drive
+from arkaq_edu.widgets.field import BALL, BUTTONS, ROBOT, Drive, Press
 from arkaq_edu.widgets.scene import Line, Picture, Points, Text
 
 SEEN = re.compile(
@@ -21,8 +21,9 @@ MOVES = re.compile(
     r"\(true: ball ([\d,]+) mm, ([+−][\d.]+) rad; goal ([+−][\d.]+)\)"
 )
 LONG = [
-    Deed("5 steps", 120, 140, 0.0), Deed("step", -60, 60, 0.4), Deed("wait 0.1 s", 0, 0, -0.4),
-    Deed("ball to the paw", 0, 0, -0.4), Deed("kick", 0, 0, -0.4), Deed("5 steps", 190, 190, 0.2),
+    Press("5 steps", 120, 140, 0.0), Press("step", -60, 60, 0.4),
+    Press("wait 0.1 s", 0, 0, -0.4), Press("ball to the paw", 0, 0, -0.4),
+    Press("kick", 0, 0, -0.4), Press("5 steps", 190, 190, 0.2),
 ]  # fmt: skip
 
 
@@ -63,11 +64,11 @@ def test_it_says_what_is_seen_beside_what_is_true(panel):
 
 @pytest.mark.parametrize("left, right", [(-190, -190), (100, 90), (190, 190), (-190, 190)])
 @pytest.mark.parametrize("head", [-1.5, 0.0, 1.5])
-@pytest.mark.parametrize("press", [None, *DEEDS])
+@pytest.mark.parametrize("press", [None, *BUTTONS])
 def test_it_draws_at_every_end_of_its_controls(panel, left, right, head, press):
     set_all(panel, left=left, right=right, head=head)
     if press:
-        panel.controls["deeds"].press(press)
+        panel.controls["presses"].press(press)
     assert panel.error is None and len(panel.drawn.panels) == 2
     ahead, turn = (left + right) / 2, (right - left) / 180
     step = f"; next {ahead:+.0f} mm, {turn:+.2f} rad".replace("-", "−")
@@ -93,11 +94,11 @@ def test_the_dashed_line_is_where_legs_without_a_drift_would_walk(panel):
 
 
 def test_a_press_remembers_the_sliders_and_later_moves_change_nothing(panel):
-    deeds = panel.controls["deeds"]
+    presses = panel.controls["presses"]
     set_all(panel, left=60, right=90, head=0.3)
-    deeds.children[0].click()
+    presses.children[0].click()
     set_all(panel, left=-190, right=190, head=0.3)
-    assert deeds.value == (Deed("step", 60, 90, 0.3),)
+    assert presses.value == (Press("step", 60, 90, 0.3),)
     world = World(rng=0)
     world.reset(ROBOT, BALL)
     world.look(0.3)
@@ -106,26 +107,26 @@ def test_a_press_remembers_the_sliders_and_later_moves_change_nothing(panel):
     x, y, heading = world.pose
     stands = f"x {x:,.0f} mm, y {y:,.0f} mm, heading {heading:+.2f} rad, 0.6 s"
     assert stands.replace("-", "−") in words
-    deeds.children[-1].click()
-    assert deeds.value == () and "0.0 s" in layers(panel.drawn.panels[1], Text)[1].text
+    presses.children[-1].click()
+    assert presses.value == () and "0.0 s" in layers(panel.drawn.panels[1], Text)[1].text
 
 
 def test_going_on_is_the_same_as_beginning_anew_to_the_last_bit():
     one, other = Drive(seed=3), Drive(seed=3)
     for n in range(len(LONG) + 1):
-        one.do(LONG[:n])
-    other.do(LONG)
+        one.follow(LONG[:n])
+    other.follow(LONG)
     assert one.world.pose == other.world.pose and one.world.ball == other.world.ball
     assert one.trail == other.trail and one.ball_trail == other.ball_trail
-    assert one.told == other.told and (one.picture == other.picture).all()
-    one.do(LONG[:2])
-    other.do([])
-    other.do(LONG[:2])
+    assert one.message == other.message and (one.picture == other.picture).all()
+    one.follow(LONG[:2])
+    other.follow([])
+    other.follow(LONG[:2])
     fresh = Drive(seed=3)
-    fresh.do(LONG[:2])
+    fresh.follow(LONG[:2])
     assert one.world.pose == other.world.pose == fresh.world.pose != Drive(seed=4).world.pose
     other_luck = Drive(seed=4)
-    other_luck.do(LONG[:2])
+    other_luck.follow(LONG[:2])
     assert other_luck.world.pose != fresh.world.pose
 
 
@@ -141,7 +142,7 @@ def test_while_the_head_moves_no_look_counts(panel):
     assert edges[1] < edges[0] / 5, "an edge is smeared over many columns"
     needed = 0.9 / Head().speed + Head().settling
     for waited in np.arange(0.1, 0.6, 0.1):
-        panel.controls["deeds"].press("wait 0.1 s")
+        panel.controls["presses"].press("wait 0.1 s")
         assert bool(MOVES.match(repr(panel))) == (waited < needed - 1e-9)
     set_all(panel, head=-0.5)
     assert MOVES.match(repr(panel))
@@ -152,7 +153,7 @@ def test_while_the_head_moves_no_look_counts(panel):
 def test_a_mark_shows_where_in_the_picture_the_ball_was_measured(panel):
     for head in (0.0, 0.3, -0.2):
         set_all(panel, head=head)
-        panel.controls["deeds"].press("step")
+        panel.controls["presses"].press("step")
         eye, above = panel.drawn.panels
         pixels = layers(eye, Picture)[0].pixels
         rows, columns = np.nonzero((pixels == pitch.PALETTE[pitch.ORANGE]).all(axis=2))
@@ -171,8 +172,8 @@ def test_a_mark_shows_where_in_the_picture_the_ball_was_measured(panel):
 def test_no_mark_is_drawn_beside_the_picture(panel):
     inside = set()
     for head in np.arange(-0.9, 0.91, 0.1):
-        set_all(panel, head=round(head, 1), deeds=())
-        panel.controls["deeds"].value = [Deed("step", 0, 0, round(head, 1))]
+        set_all(panel, head=round(head, 1), presses=())
+        panel.controls["presses"].value = [Press("step", 0, 0, round(head, 1))]
         eye, _ = panel.drawn.panels
         bars = layers(eye, Line)
         for bar in bars:
@@ -187,40 +188,40 @@ def test_a_kick_says_how_far_and_whether_it_was_a_goal():
     told = set()
     for seed in range(12):
         drive = Drive(seed)
-        drive.do([Deed("ball to the paw", 0, 0, 0), Deed("kick", 0, 0, 0)])
+        drive.follow([Press("ball to the paw", 0, 0, 0), Press("kick", 0, 0, 0)])
         start, end = drive.ball_trail[0], drive.world.ball
         inside = end[0] > 2700 + 42 and abs(end[1]) < 400
         assert GoalSupervisor(2000.0).judge(drive.world).is_success == inside
         rolled = np.hypot(end[0] - start[0], end[1] - start[1])
-        assert drive.told == f"kicked {rolled:,.0f} mm{', a goal' if inside else ', no goal'}"
+        assert drive.message == f"kicked {rolled:,.0f} mm{', a goal' if inside else ', no goal'}"
         told.add(inside)
-    drive.do([*drive.deeds, Deed("step", 0, 0, 0)])
-    assert drive.told == "" and drive.ball_trail
-    drive.do([Deed("kick", 0, 0, 0)])
-    assert drive.told == "the paw met no ball" and drive.world.ball == BALL
+    drive.follow([*drive.presses, Press("step", 0, 0, 0)])
+    assert drive.message == "" and drive.ball_trail
+    drive.follow([Press("kick", 0, 0, 0)])
+    assert drive.message == "the paw met no ball" and drive.world.ball == BALL
 
 
 def test_before_a_wall_there_is_no_room_for_the_ball():
     drive = Drive()
-    drive.do([Deed("5 steps", 190, 190, 0.0)] * 4)
+    drive.follow([Press("5 steps", 190, 190, 0.0)] * 4)
     x, y, heading = drive.world.pose
     assert abs(x + 245 * np.cos(heading)) > 3000 or abs(y + 245 * np.sin(heading)) > 2000
-    drive.do([*drive.deeds, Deed("ball to the paw", 0, 0, 0)])
-    assert drive.told == "no room for the ball before the paw" and drive.world.ball == BALL
+    drive.follow([*drive.presses, Press("ball to the paw", 0, 0, 0)])
+    assert drive.message == "no room for the ball before the paw" and drive.world.ball == BALL
 
 
 def test_a_wall_stops_it(panel):
-    set_all(panel, left=190, right=190, deeds=[Deed("5 steps", 190, 190, 0.0)] * 12)
+    set_all(panel, left=190, right=190, presses=[Press("5 steps", 190, 190, 0.0)] * 12)
     words = layers(panel.drawn.panels[1], Text)[1].text
     x, y = (read(number) for number in re.findall(r"[xy] (−?[\d,]+) mm", words))
     assert abs(x) < 3000 and abs(y) < 2000
     assert repr(panel).startswith("no ball (true ")
 
 
-def test_what_is_no_deed_is_refused(panel):
+def test_an_unknown_press_is_refused(panel):
     with pytest.raises(ValueError, match="name must be one of step, 5 steps"):
-        panel.controls["deeds"].value = [("fly", 0, 0, 0)]
+        panel.controls["presses"].value = [("fly", 0, 0, 0)]
     with pytest.raises(ValueError, match="name must be one of step, 5 steps"):
-        panel.controls["deeds"].press("fly")
-    panel.controls["deeds"].value = [Deed("step", 500, 0, 0)]
+        panel.controls["presses"].press("fly")
+    panel.controls["presses"].value = [Press("step", 500, 0, 0)]
     assert "footsteps must be in" in str(panel.error)
