@@ -1,8 +1,10 @@
-"""What all networks of the ART room share: scikit-learn's manners, and the state they keep."""
+"""What the four networks share: scikit-learn's conventions, and room for a growing number of rows.
+
+A network adds three things: what its parameters allow, how it learns rows, and how it recalls them.
+"""
 
 from __future__ import annotations
 
-import math
 from typing import Any, Self
 
 import numpy as np
@@ -19,9 +21,8 @@ Labels = NDArray[np.int64]
 class Categories(ClusterMixin, BaseEstimator):
     """Categories that are founded and learned one pattern at a time.
 
-    A network says what it does with the patterns in `_learn_rows` and `_recall_rows`, what its
-    parameters allow in `_parameters`, and which of its arrays have a row for each category in
-    `_rows`. Categories are kept in arrays with room to spare, of which the first `_n` rows count.
+    The arrays named in `_rows` have one row per category and spare rows for new ones. The first
+    `_n` rows are in use.
     """
 
     _rows: tuple[str, ...] = ("_centers", "_counts")
@@ -31,35 +32,31 @@ class Categories(ClusterMixin, BaseEstimator):
     labels_: Labels
     n_features_in_: int
 
-    def _wishes(self) -> tuple:
-        """Return the parameters as the user set them."""
+    def _parameters(self, n_features: int) -> Any:
+        """Return the validated parameters as a NamedTuple."""
         raise NotImplementedError
 
-    def _parameters(self) -> tuple:
-        """Return the parameters, validated, in the form the kernels take."""
+    def _learn_rows(self, X: Floats, parameters: Any) -> tuple[Labels, int]:
+        """Learn the rows of `X`; return their categories and the new number of categories."""
         raise NotImplementedError
 
-    def _learn_rows(self, X: Floats, done: int, labels: Labels) -> tuple[int, int]:
-        """Learn ``X[done:]``; return where it stopped for want of room, and the new `_n`."""
-        raise NotImplementedError
-
-    def _recall_rows(self, X: Floats, labels: Labels) -> None:
-        """Write the category of each row of `X` into `labels`, learning nothing."""
+    def _recall_rows(self, X: Floats, parameters: Any) -> Labels:
+        """Return the category of each row of `X`; learn nothing."""
         raise NotImplementedError
 
     def _admit(self, X: Floats) -> Floats:
-        """Return finite patterns as the network takes them, or refuse them."""
+        """Return finite patterns in the form that the network takes, or raise `ValueError`."""
         return X
 
     def fit(self, X: ArrayLike, y: Any = None) -> Self:
-        """Forget everything, then learn the patterns in the order given, once each.
+        """Forget everything, then learn the patterns once each, in the given order.
 
         Parameters
         ----------
         X : array-like of shape (n_samples, n_features)
             The patterns, finite.
         y : ignored
-            Present for scikit-learn's sake.
+            Part of scikit-learn's interface.
 
         Returns
         -------
@@ -69,39 +66,34 @@ class Categories(ClusterMixin, BaseEstimator):
         ------
         ValueError
             For a parameter out of range, or an `X` of the wrong shape, not finite, or not of the
-            kind the network takes.
+            kind that the network takes.
         """
-        self._parameters()
-        return self._learn(self._patterns(X, reset=True), fresh=True)
+        return self._fit(X, fresh=True)
 
     def partial_fit(self, X: ArrayLike, y: Any = None) -> Self:
-        """Learn more patterns, in the order given, with the categories there are.
+        """Learn more patterns, in the given order, and keep the present categories.
 
-        Parameters, errors and result as for `fit`. A stream learned in pieces gives the same
-        categories as the stream learned whole.
+        Parameters, errors and result are those of `fit`. A stream learned in pieces gives the same
+        categories as the whole stream learned at once.
         """
-        fresh = not self.__sklearn_is_fitted__()
-        return self._learn(self._patterns(X, reset=fresh), fresh)
+        return self._fit(X, fresh=not self.__sklearn_is_fitted__())
 
     def learn_one(self, x: ArrayLike) -> int:
         """Learn one pattern of shape (n_features,) and return its category, in microseconds.
 
-        It does to the categories what `partial_fit` does with one row; `labels_` stays as it is.
+        The categories change as under `partial_fit` with one row. `labels_` does not change.
 
         Raises
         ------
         ValueError
-            For a parameter out of range, or an `x` of the wrong shape, not finite, or not of the
-            kind the network takes.
+            As for `fit`.
         """
         if not self.__sklearn_is_fitted__():
             return int(self.partial_fit([np.asarray(x)]).labels_[0])
-        label = np.empty(1, np.int64)
-        self._present(self._pattern(x), label)
-        return int(label[0])
+        return int(self._learn(self._pattern(x), self._parameters(self.n_features_in_))[0])
 
     def predict(self, X: ArrayLike) -> Labels:
-        """Return the category of each pattern; nothing is learned.
+        """Return the category of each pattern; learn nothing.
 
         Parameters
         ----------
@@ -111,30 +103,32 @@ class Categories(ClusterMixin, BaseEstimator):
         Returns
         -------
         ndarray of shape (n_samples,)
-            Indices into `cluster_centers_`; -1 where the class says so.
+            Indices into `cluster_centers_`, or -1 where the class says so.
 
         Raises
         ------
         sklearn.exceptions.NotFittedError
             If nothing has been learned yet.
         ValueError
-            For an `X` of the wrong shape, not finite, or not of the kind the network takes.
+            As for `fit`.
         """
         check_is_fitted(self)
-        return self._recall(self._patterns(X, reset=False))
+        rows = self._patterns(X)
+        validate_data(self, X, reset=False, skip_check_array=True)
+        return self._recall_rows(rows, self._parameters(self.n_features_in_))
 
     def category(self, x: ArrayLike) -> int:
         """Return the category of one pattern of shape (n_features,), in microseconds.
 
-        It is the category that `predict` gives. Errors as for `predict`.
+        It is the category that `predict` returns, and the errors are the same.
         """
-        if not self.__sklearn_is_fitted__():  # check_is_fitted itself takes ten times as long
-            check_is_fitted(self)
-        return int(self._recall(self._pattern(x))[0])
+        if not self.__sklearn_is_fitted__():
+            check_is_fitted(self)  # raises; too slow to call every time
+        return int(self._recall_rows(self._pattern(x), self._parameters(self.n_features_in_))[0])
 
     @property
     def cluster_centers_(self) -> Floats:
-        """The centers, shape (n_clusters, n_features), in the order of their founding (a copy)."""
+        """The centers, shape (n_clusters, n_features), in the order of founding (a copy)."""
         return self._centers[: self._n].copy()
 
     @property
@@ -150,75 +144,37 @@ class Categories(ClusterMixin, BaseEstimator):
     def __sklearn_is_fitted__(self) -> bool:
         return hasattr(self, "_n")
 
-    def _begin(self, **rows: NDArray) -> None:
-        """Take over the arrays of `_rows`, which may have no row yet."""
-        self._given = self._wishes()
-        self._settings = self._parameters()
-        for name, values in rows.items():
-            setattr(self, name, values)
-        self._n = len(self._counts)
-        self._arrange(max(64, self._n))
-        self.labels_ = np.empty(0, np.int64)
-
-    def _no_rows(self, n_features: int) -> dict[str, NDArray]:
-        """Return the arrays of a network without a category."""
-        none = {name: np.empty((0, n_features)) for name in self._rows}
-        return none | {"_counts": np.empty(0, np.int64)}
-
-    def _arrange(self, capacity: int) -> None:
-        """Give the categories room for `capacity` of them, under the present settings."""
-        for name in self._rows:
-            old = getattr(self, name)
-            new = np.empty((capacity, *old.shape[1:]), old.dtype)
-            new[: self._n] = old[: self._n]
-            setattr(self, name, new)
-
-    def _learn(self, X: Floats, fresh: bool) -> Self:
+    def _fit(self, X: ArrayLike, fresh: bool) -> Self:
+        rows = self._patterns(X)
+        parameters = self._parameters(rows.shape[1])
+        validate_data(self, X, reset=fresh, skip_check_array=True)  # number and names of features
         if fresh:
-            self._begin(**self._no_rows(X.shape[1]))
-        labels = np.empty(len(X), np.int64)
-        self._present(X, labels)
-        self.labels_ = labels
+            for name in self._rows:
+                setattr(self, name, np.empty((0, rows.shape[1])))
+            self._counts, self._n = np.empty(0, np.int64), 0
+        self.labels_ = self._learn(rows, parameters)
+        self._resize(self._n)
         return self
 
-    def _heed(self) -> None:
-        """Follow `set_params`, if it was called since the last pattern."""
-        wishes = self._wishes()
-        if wishes != self._given:
-            self._settings = self._parameters()
-            self._given = wishes
-            self._arrange(len(self._counts))
-
-    def _recall(self, X: Floats) -> Labels:
-        """Return the category of each row of `X`, learning nothing."""
-        self._heed()
-        labels = np.empty(len(X), np.int64)
-        self._recall_rows(X, labels)
+    def _learn(self, X: Floats, parameters: Any) -> Labels:
+        if self._n + len(X) > len(self._counts):  # each pattern may found a category
+            self._resize(max(self._n + len(X), 2 * self._n))
+        labels, self._n = self._learn_rows(X, parameters)
         return labels
 
-    def _present(self, X: Floats, labels: Labels) -> None:
-        """Learn the rows of `X`, writing the category of each into `labels`."""
-        self._heed()
-        done = 0
-        while True:
-            done, self._n = self._learn_rows(X, done, labels)
-            if done == len(X):
-                return
-            self._arrange(2 * self._n)
+    def _resize(self, capacity: int) -> None:
+        """Give the arrays `capacity` rows."""
+        for name in self._rows:
+            used = getattr(self, name)[: self._n]
+            spare = np.empty((capacity - self._n, *used.shape[1:]), used.dtype)
+            setattr(self, name, np.concatenate([used, spare]))
 
-    def _patterns(self, X: ArrayLike, *, reset: bool) -> Floats:
-        """Return `X` for the kernels: validated, and writeable, for they are compiled for that."""
-        checked = check_array(X, dtype=np.float64, order="C", estimator=self, input_name="X")
-        admitted = self._admit(checked)
-        validate_data(self, X, reset=reset, skip_check_array=True)  # number and names of features
-        return np.require(admitted, requirements=["C", "W"])
+    def _patterns(self, X: ArrayLike) -> Floats:
+        """Return `X` as validated rows."""
+        rows = check_array(X, dtype=np.float64, order="C", estimator=self, input_name="X")
+        # Kernels are compiled for arrays that can be written to.
+        return np.require(self._admit(rows), requirements=["C", "W"])
 
     def _pattern(self, x: ArrayLike) -> Floats:
-        """Return `x` as one row for the kernels."""
-        try:
-            row = np.array(x, dtype=np.float64)
-        except (TypeError, ValueError):
-            row = np.empty(0)
-        if row.shape != (self.n_features_in_,) or not all(map(math.isfinite, row.tolist())):
-            row = array("x", x, (self.n_features_in_,))  # refuses it, and says why
-        return self._admit(row[np.newaxis])
+        """Return the pattern `x` as one validated row."""
+        return self._admit(np.array(array("x", x, (self.n_features_in_,)), ndmin=2))

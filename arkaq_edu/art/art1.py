@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,111 +16,98 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-@kernel
-def overlap(pattern, template):
-    """Return how many active components the two share, and how many the template has."""
-    shared, size = 0.0, 0.0
-    for i in range(len(pattern)):
-        shared += pattern[i] * template[i]
-        size += template[i]
-    return shared, size
+class Parameters(NamedTuple):
+    """The parameters of the network."""
+
+    vigilance: float
+    L: float
 
 
 @kernel
-def search(pattern, templates, n, vigilance, L, tried):
-    """Write the nodes that F2 chooses, in order, into `tried`; return how many there were.
+def search(I, templates, n, parameters, tried=None):
+    """Return the node in resonance with pattern `I`: `n` if uncommitted, -1 if `I` is silent.
 
-    All but the last were reset. The last is in resonance; `n` stands for an uncommitted node, -1
-    for none, where the pattern is silent.
+    `tried`, a list, takes the nodes that F2 chooses. Compiled code runs without one.
     """
-    active = 0.0
-    for i in range(len(pattern)):
-        active += pattern[i]
+    vigilance, L = parameters
+    active = I.sum()
     if active == 0.0:
-        tried[0] = -1
-        return 1
-    signal, match = np.empty(n), np.empty(n)
+        return -1
+    T, match = np.zeros(n + 1), np.ones(n + 1)
     for j in range(n):
-        shared, size = overlap(pattern, templates[j])
-        signal[j] = L * shared / (L - 1.0 + size)
+        shared = (I * templates[j]).sum()  # |I and z_j|, what the 2/3 rule leaves active in F1
+        T[j] = L * shared / (L - 1.0 + templates[j].sum())
         match[j] = shared / active
-    for k in range(n):
-        best = 0
-        for j in range(1, n):
-            if signal[j] > signal[best]:
-                best = j
-        if signal[best] <= 0.0:  # only nodes are left that were reset or share nothing
-            tried[k] = n
-            return k + 1
-        tried[k] = best
-        if match[best] >= vigilance:
-            return k + 1
-        signal[best] = -1.0  # reset: blocked for as long as this pattern lasts
-    tried[n] = n
-    return n + 1
+    while True:
+        J = T.argmax()  # of equals the first
+        if T[J] == 0.0:  # no node is left that shares anything
+            J = n
+        if tried is not None:
+            tried.append(J)
+        if match[J] >= vigilance:
+            return J
+        T[J] = 0.0  # reset: blocked while this pattern lasts
 
 
 @kernel
-def learn(X, start, labels, templates, counts, n, vigilance, L):
-    """Present the patterns ``X[start:]`` in order; return where it stopped and how many templates.
-
-    It stops early when a category is to be founded and ``len(templates)`` leaves no room for it.
-    """
-    tried = np.empty(len(templates) + 1, np.int64)
-    for t in range(start, len(X)):
-        j = tried[search(X[t], templates, n, vigilance, L, tried) - 1]
-        if j == n:
-            if n == len(templates):
-                return t, n
-            n += 1
-            templates[j] = 1.0  # what an uncommitted node expects: anything
-            counts[j] = 0
-        if j >= 0:
-            templates[j] *= X[t]  # both traces follow the active nodes of F1 (fast learning)
-            counts[j] += 1
-        labels[t] = j
-    return len(X), n
-
-
-@kernel
-def recall(X, labels, templates, n, vigilance, L):
-    """Write the category in resonance with each pattern of `X` into `labels`, or -1."""
-    tried = np.empty(len(templates) + 1, np.int64)
+def learn(X, templates, counts, n, parameters):
+    """Present the patterns in order; return their categories and the number of templates."""
+    labels = np.empty(len(X), np.int64)
     for t in range(len(X)):
-        j = tried[search(X[t], templates, n, vigilance, L, tried) - 1]
-        labels[t] = j if j < n else -1
+        J = search(X[t], templates, n, parameters)
+        if J == n:
+            n += 1
+            templates[J] = 1.0  # an uncommitted node expects anything
+            counts[J] = 0
+        if J >= 0:
+            templates[J] *= X[t]  # fast learning: both traces follow the active nodes of F1
+            counts[J] += 1
+        labels[t] = J
+    return labels, n
+
+
+@kernel
+def recall(X, templates, n, parameters):
+    """Return the committed node in resonance with each pattern, or -1."""
+    labels = np.empty(len(X), np.int64)
+    for t in range(len(X)):
+        J = search(X[t], templates, n, parameters)
+        labels[t] = J if J < n else -1
+    return labels
 
 
 class ART1(Categories):
     """Categories of binary patterns: a template is what its patterns have in common.
 
-    F1 follows the 2/3 rule: a node is active where two of three are, the input, the expectation
-    that F2 sends down, and gain 1, which is on while there is an input and F2 is silent. So F1
-    first shows the pattern `I`; F2 chooses the node of largest signal
-    ``L |I and z_j| / (L - 1 + |z_j|)``; its expectation `z_j` leaves ``I and z_j`` active in F1. If
-    this is less than the part `vigilance` of the active inputs, ``|I and z_j| / |I| < vigilance``,
-    the node is reset and stays blocked while the pattern lasts, and F2 chooses again; else the
-    template becomes ``I and z_j`` at once (fast learning). An uncommitted node expects anything,
-    is chosen when no committed node is left that shares anything with the pattern, and is never
-    reset. Of equal signals the category founded first is chosen.
+    F1 follows the 2/3 rule: a node is active if two of three are: the input, the expectation that
+    F2 sends down, and gain 1, which is on while there is an input and F2 is silent. So F1 first
+    shows the pattern `I`, and F2 chooses the node of largest signal
+    ``L |I and z_j| / (L - 1 + |z_j|)``. Its expectation `z_j` leaves ``I and z_j`` active in F1.
 
-    Here vigilance is a similarity: the larger, the more categories. It refers to the active inputs,
-    not to all inputs, and a match of exactly `vigilance` is enough: with 1, a category holds only
-    patterns that contain its template and add nothing to it.
+    If that is too small a part of the active inputs, ``|I and z_j| / |I| < vigilance``, the node is
+    reset. It stays blocked while the pattern lasts, and F2 chooses again. Otherwise the template
+    becomes ``I and z_j`` at once (fast learning). An uncommitted node expects anything. It is
+    chosen when no committed node is left that shares anything with the pattern, and it is never
+    reset. Of equal signals, the category founded first is chosen.
 
-    `predict` and `category` search as learning does, and give -1 where they end at an uncommitted
-    node: the pattern is new. A pattern without an active input belongs to category -1 too.
+    Vigilance is a similarity here: the larger, the more categories. It refers to the active inputs,
+    not to all inputs, and a match of exactly `vigilance` is enough. With vigilance 1, a category
+    holds only patterns that are contained in its template.
+
+    `predict` and `category` search as learning does. They return -1 if the search ends at an
+    uncommitted node: the pattern is new. A pattern without an active input also belongs to
+    category -1.
 
     Parameters
     ----------
     vigilance : float in [0, 1], default=0.7
         Part of a pattern's active inputs that must be found in the template.
     L : float > 1, default=2
-        Preference in the choice: the larger, the more F2 is drawn to templates with few active
+        Preference of the choice. The larger it is, the more F2 prefers templates with few active
         components. Near 1, it prefers any template that is contained in the pattern.
     binarize : float or None, default=None
-        An input is active where it is larger. None: patterns are binary already, and other numbers
-        than 0 and 1 are refused.
+        An input is active if it is larger than this. None means that patterns are binary already;
+        numbers other than 0 and 1 are then refused.
 
     Attributes
     ----------
@@ -133,9 +120,9 @@ class ART1(Categories):
     n_clusters_ : int
         Number of categories.
     labels_ : ndarray of shape (n_samples,)
-        The category of each pattern of the last `fit` or `partial_fit`, as it was decided when
-        the pattern was presented. Templates shrink on, so `predict` may differ until learning is
-        stable: until a pass through the patterns by `partial_fit` changes no template.
+        The category of each pattern of the last `fit` or `partial_fit`, decided when the pattern
+        was presented. Templates keep shrinking, so `predict` may differ until learning is stable,
+        that is, until a pass through the patterns by `partial_fit` changes no template.
     n_features_in_ : int
         Number of features.
     feature_names_in_ : ndarray of shape (n_features_in_,)
@@ -143,8 +130,8 @@ class ART1(Categories):
 
     Notes
     -----
-    With `binarize` the class passes all of scikit-learn's estimator checks. Without, it refuses
-    their patterns, which are not binary.
+    With `binarize` the class passes all of scikit-learn's estimator checks. Without it, the class
+    refuses their patterns, which are not binary.
 
     References
     ----------
@@ -182,9 +169,9 @@ class ART1(Categories):
         DataFrame
             One row for each step and each node of F1. Step 0 is the pattern alone, each further
             step a choice of F2. Columns: `step`; `node`, the chosen one (-1: none; `n_clusters_`:
-            an uncommitted one); `feature`; `input`, `gain1`, `gain2` and `expectation`, 0 or 1;
-            `activity` of F1 by the 2/3 rule; `signal` that the node received; `match`, the active
-            part of the input; whether the step ended in `reset`, or the node is the `winner`.
+            uncommitted); `feature`; `input`, `gain1`, `gain2` and `expectation`, 0 or 1; `activity`
+            of F1 by the 2/3 rule; the `signal` that the node received; `match`, the active part of
+            the input; `reset`, whether the step ended in one; `winner`, whether the node won.
 
         Raises
         ------
@@ -210,53 +197,32 @@ class ART1(Categories):
         import pandas as pd
 
         check_is_fitted(self)
-        self._heed()
-        pattern = self._pattern(x)[0]
-        vigilance, L = self._settings
-        tried = np.empty(self._n + 1, np.int64)
-        steps = search(pattern, self._centers, self._n, vigilance, L, tried)
-        on = bool(pattern.any())
-        tables = [self._step(0, -1, pattern, gain1=on)]
-        if on:
-            tables += [self._step(k + 1, int(tried[k]), pattern, gain1=False) for k in range(steps)]
-        table = pd.concat(tables, ignore_index=True)
-        table["reset"] = table["match"] < vigilance
-        table["winner"] = table["match"] >= vigilance
-        return table
-
-    def _step(self, step: int, node: int, pattern: Floats, gain1: bool) -> pd.DataFrame:
-        """Return the rows of one step of a trace."""
-        import pandas as pd
-
-        expectation, signal, match = np.zeros(len(pattern)), np.nan, np.nan
-        if node == self._n:
-            expectation[:] = 1
-        elif node >= 0:
-            expectation[:] = self._centers[node]
-            signal = float(self.bottom_up_[node] @ pattern)
-        activity = pattern + gain1 + expectation >= 2
-        if node >= 0:
-            match = activity.sum() / pattern.sum()
-        return pd.DataFrame(
-            {
-                "step": step,
-                "node": node,
-                "feature": np.arange(len(pattern)),
-                "input": pattern.astype(int),
-                "gain1": int(gain1),
-                "gain2": int(pattern.any()),
-                "expectation": expectation.astype(int),
-                "activity": activity.astype(int),
-                "signal": signal,
-                "match": match,
-            }
-        )
+        I = self._pattern(x)[0]
+        nodes: list[int] = []
+        plain = getattr(search, "py_func", search)
+        winner = plain(I, self._centers, self._n, self._parameters(len(I)), nodes)
+        expected = np.vstack([self.cluster_centers_, np.ones(len(I)), np.zeros(len(I))])
+        received = np.append(self.bottom_up_ @ I, [np.nan, np.nan])
+        steps = []
+        for step, node in enumerate([-1, *nodes]):
+            table = pd.DataFrame({"step": step, "node": int(node), "feature": range(len(I))})
+            table["input"] = I.astype(int)
+            table["gain1"] = int(step == 0 and I.any())
+            table["gain2"] = int(I.any())
+            table["expectation"] = expected[node].astype(int)
+            table["activity"] = (table.input + table.gain1 + table.expectation >= 2).astype(int)
+            table["signal"] = received[node]
+            table["match"] = table.activity.sum() / I.sum() if step else np.nan
+            table["winner"] = step > 0 and node == winner
+            table.insert(10, "reset", step > 0 and node != winner)
+            steps.append(table)
+        return pd.concat(steps, ignore_index=True)
 
     @property
     def bottom_up_(self) -> Floats:
         """The bottom-up traces, shape (n_clusters, n_features)."""
-        templates, L = self.cluster_centers_, self._settings[1]
-        return L * templates / (L - 1 + templates.sum(axis=1, keepdims=True))
+        templates = self.cluster_centers_
+        return self.L * templates / (self.L - 1 + templates.sum(axis=1, keepdims=True))
 
     def _admit(self, X: Floats) -> Floats:
         if self.binarize is not None:
@@ -265,19 +231,16 @@ class ART1(Categories):
         if strange.any():
             value = X[strange][0]
             raise ValueError(
-                f"patterns must be binary (0 or 1), got {value:g}; set binarize to cut them"
+                f"patterns must be binary (0 or 1), got {value:g}; set binarize to threshold them"
             )
         return X
 
-    def _wishes(self) -> tuple:
-        return self.vigilance, self.L
-
-    def _parameters(self) -> tuple[float, float]:
+    def _parameters(self, n_features: int) -> Parameters:
         vigilance = number("vigilance", self.vigilance, 0, 1)
-        return vigilance, number("L", self.L, 1, open_low=True, open_high=True)
+        return Parameters(vigilance, number("L", self.L, 1, open_low=True, open_high=True))
 
-    def _learn_rows(self, X: Floats, done: int, labels: Labels) -> tuple[int, int]:
-        return learn(X, done, labels, self._centers, self._counts, self._n, *self._settings)
+    def _learn_rows(self, X: Floats, parameters: Parameters) -> tuple[Labels, int]:
+        return learn(X, self._centers, self._counts, self._n, parameters)
 
-    def _recall_rows(self, X: Floats, labels: Labels) -> None:
-        recall(X, labels, self._centers, self._n, *self._settings)
+    def _recall_rows(self, X: Floats, parameters: Parameters) -> Labels:
+        return recall(X, self._centers, self._n, parameters)

@@ -3,287 +3,212 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from sklearn.utils.validation import check_is_fitted
 
 from arkaq_edu._checks import number
 from arkaq_edu._compiled import kernel
 from arkaq_edu.art._estimator import Categories, Floats, Labels
-from arkaq_edu.art._inlined import inlined
+from arkaq_edu.art.vectors import change, dot, norm, unit
 
 if TYPE_CHECKING:
     import pandas as pd
 
-MOST_CYCLES = 10_000  # F1 settles long before; this only bounds a pathological case
-LEVELS = ("w", "x", "v", "u", "p", "q", "r")
+MOST_CYCLES = 10_000  # F1 settles long before; without a bound a tiny `tol` could loop forever
 
 
-def match_norm(cosine: ArrayLike, cdz: ArrayLike, c: float) -> NDArray[np.float64]:
-    """Return norm r, which vigilance is compared with, in closed form: the surface of figure 2.21.
-
-    Parameters
-    ----------
-    cosine : array-like
-        Cosine of the angle between `u` and the expectation `z_J`.
-    cdz : array-like
-        Norm of ``c d z_J``. It is 0 for an uncommitted node and ``c d / (1 - d)`` at the end of
-        learning.
-    c : float
-        As in `ART2`.
-
-    References
-    ----------
-    Thesis equation 2.47.
-
-    Examples
-    --------
-    >>> match_norm([1.0, 0.5, 0.0], 0.9, c=0.1).round(3)
-    array([1.   , 0.888, 0.746])
-    """
-    cosine, cdz = np.asarray(cosine, dtype=np.float64), np.asarray(cdz, dtype=np.float64)
-    above = np.sqrt((1 + c) ** 2 + 2 * (1 + c) * cdz * cosine + cdz**2)
-    return above / (1 + np.sqrt(c**2 + 2 * c * cdz * cosine + cdz**2))
+TINY = 2.0**-1000  # the least e: it turns 0 / 0 into 0 and changes nothing else
 
 
-@kernel
-def f(x, theta, smooth):
-    """Return the signal of an activity: noise below `theta` is damped or, if not `smooth`, cut."""
-    if x >= theta:
-        return x
-    if smooth and x > 0.0:
-        return 2.0 * theta * x * x / (x * x + theta * theta)
-    return 0.0
+class Parameters(NamedTuple):
+    """The parameters of the network, in the notation of the thesis."""
+
+    vigilance: float
+    a: float
+    b: float
+    c: float
+    d: float
+    theta: float
+    e: float
+    smooth: bool  # whether f damps noise (2.32) or cuts it (2.34)
+    rate: float
+    start: float  # of the bottom-up traces
+    tol: float
 
 
-@inlined
-def divide_by_norm(source, e, target):
-    """Write ``source / (e + norm(source))`` into `target`; return the largest change there."""
-    total = 0.0
-    for i in range(len(source)):
-        total += source[i] * source[i]
-    divisor = e + math.sqrt(total)
-    change = 0.0
-    for i in range(len(source)):
-        value = source[i] / divisor if divisor > 0.0 else 0.0
-        change = max(change, abs(value - target[i]))
-        target[i] = value
-    return change
+class F1(NamedTuple):
+    """The activities of F1, an array each with a value for each feature."""
+
+    w: Floats
+    x: Floats
+    v: Floats
+    u: Floats
+    p: Floats
+    q: Floats
 
 
 @kernel
-def enter(x, pattern):
-    """Write `x` scaled to norm 1 into `pattern` (the F0 stage); return false if all is silent."""
-    peak = 0.0
+def f(x, k):
+    """Return the signal of activities: below theta, noise is damped or cut."""
+    signal = x.copy()
     for i in range(len(x)):
-        peak = max(peak, x[i])
-    if peak == 0.0:
-        return False
-    for i in range(len(x)):
-        pattern[i] = x[i] / peak  # so that no square leaves the range of a float
-    divide_by_norm(pattern, 0.0, pattern)
-    return True
+        if x[i] < k.theta:
+            damped = 2.0 * k.theta * x[i] ** 2 / (x[i] ** 2 + k.theta**2)
+            signal[i] = damped if k.smooth else 0.0  # eq 2.32 or 2.34; the rest is 2.33 and 2.35
+    return signal
 
 
 @kernel
-def expect(z, F1, d, e):
-    """Let `p` and `q` of F1 follow `u` and the expectation `z` of F2 (zeros: F2 is silent)."""
-    u, p, q = F1[3], F1[4], F1[5]
-    for i in range(len(z)):
-        p[i] = u[i] + d * z[i]
-    divide_by_norm(p, e, q)
+def cycle(I, z, u, q, k):
+    """Go once around the loops of F1, from `u` and `q`; `z` is what F2 expects.
 
-
-@kernel
-def cycle(pattern, z, F1, a, b, d, theta, e, smooth):
-    """Go once round the loops of F1; return the largest change in `u`."""
-    w, x, v, u, q = F1[0], F1[1], F1[2], F1[3], F1[5]
-    for i in range(len(pattern)):
-        w[i] = pattern[i] + a * u[i]
-    divide_by_norm(w, e, x)
-    for i in range(len(pattern)):
-        v[i] = f(x[i], theta, smooth) + b * f(q[i], theta, smooth)
-    change = divide_by_norm(v, e, u)
-    expect(z, F1, d, e)
-    return change
-
-
-@kernel
-def compare(F1, c, e):
-    """Let `r`, the orienting subsystem's view of F1, follow `u` and `p`; return its norm."""
-    u, p, r = F1[3], F1[4], F1[6]
-    uu, pp, rr = 0.0, 0.0, 0.0
-    for i in range(len(u)):
-        uu += u[i] * u[i]
-        pp += p[i] * p[i]
-    divisor = e + math.sqrt(uu) + c * math.sqrt(pp)
-    for i in range(len(u)):
-        r[i] = (u[i] + c * p[i]) / divisor
-        rr += r[i] * r[i]
-    return math.sqrt(rr)
-
-
-@kernel
-def record(F1, node, signal, norm_r, reset, row, steps, activity):
-    """Note one state of the network in a trace, if one is kept; return the next row."""
-    if row < len(steps):
-        steps[row, 0], steps[row, 1], steps[row, 2], steps[row, 3] = node, signal, norm_r, reset
-        activity[row] = F1
-    return row + 1
-
-
-@kernel
-def present(pattern, F1, top_down, bottom_up, n, vigilance, knobs, steps, activity):
-    """Return the node in resonance with the unit `pattern`, and how many states there were.
-
-    Node `n` is uncommitted; -1 stands for none, where nothing of the pattern is above the noise.
-    F1 is left in resonance. The states are recorded as far as `steps` and `activity` have rows.
+    Each level is at rest with its inputs (2.25, the limit of 2.24). The thesis lists the levels
+    from the top; the order here is that in which activity flows, from the input up.
     """
-    a, b, c, d, theta, e, smooth, tol, bottom_up_start = knobs
-    silence = np.zeros(len(pattern))
-    F1[:] = 0.0
-    row = 0
+    a, b, d, e = k.a, k.b, k.d, k.e
+    w = I + a * u  # eq 2.30
+    x = w / (e + norm(w))  # eq 2.31
+    v = f(x, k) + b * f(q, k)  # eq 2.29
+    u = v / (e + norm(v))  # eq 2.28
+    p = u + d * z  # eq 2.26, which is 2.38 when F2 has chosen
+    q = p / (e + norm(p))  # eq 2.27
+    return F1(w, x, v, u, p, q)
+
+
+@kernel
+def present(I, top_down, bottom_up, n, k, trace=None):
+    """Return the node in resonance with the unit pattern `I`, and `u` as it then is.
+
+    Node `n` is uncommitted; -1 means that nothing of `I` is above the noise. `trace`, a list,
+    takes every state of the network. Compiled code runs without one.
+    """
+    silent = np.zeros(len(I))
+    u, q = silent, silent
     for _ in range(MOST_CYCLES):  # F1 by itself
-        change = cycle(pattern, silence, F1, a, b, d, theta, e, smooth)
-        row = record(F1, -1, np.nan, np.nan, False, row, steps, activity)
-        if change <= tol:
+        before = u
+        w, x, v, u, p, q = cycle(I, silent, u, q, k)
+        if trace is not None:
+            trace.append((-1, np.nan, np.nan, False, F1(w, x, v, u, p, q), silent))
+        if change(u, before) <= k.tol:
             break
-    seen = F1[3].copy()
-    if seen.max() == 0.0:
-        return -1, row
-    signal = np.zeros(n + 1)
+    if u.max() == 0.0:
+        return -1, u
+
+    seen = u
+    T = np.empty(n + 1)
     for j in range(n):
-        for i in range(len(seen)):
-            signal[j] += seen[i] * bottom_up[j, i]
-    for i in range(len(seen)):
-        signal[n] += seen[i] * bottom_up_start
+        T[j] = dot(p, bottom_up[j])  # eq 2.36
+    T[n] = dot(p, np.full(len(I), k.start))
     while True:
-        node = int(signal.argmax())  # of equals the first; uncommitted nodes come last
-        expectation = top_down[node] if node < n else silence
-        F1[3] = seen
-        expect(expectation, F1, d, e)
-        reset = settled = False
+        J = T.argmax()  # eq 2.37: among the nodes not reset; of equals the first
+        z = top_down[J] if J < n else silent
+        u = seen
+        p = u + k.d * z  # eq 2.38
+        q = p / (k.e + norm(p))
+        settled = False
         for _ in range(MOST_CYCLES):
-            norm_r = compare(F1, c, e)
-            # Nothing is expected of an uncommitted node, so r has norm 1 there, rounding apart.
-            reset = node < n and vigilance > e + norm_r
-            row = record(F1, node, signal[node], norm_r, reset, row, steps, activity)
+            r = (u + k.c * p) / (k.e + norm(u) + k.c * norm(p))  # eq 2.43
+            norm_r = norm(r)
+            reset = k.vigilance > k.e + norm_r and J < n  # eq 2.44
+            if trace is not None:
+                trace.append((J, T[J], norm_r, reset, F1(w, x, v, u, p, q), r))
             if reset or settled:
                 break
-            settled = cycle(pattern, expectation, F1, a, b, d, theta, e, smooth) <= tol
+            before = u
+            w, x, v, u, p, q = cycle(I, z, u, q, k)
+            settled = change(u, before) <= k.tol
         if not reset:
-            return node, row
-        signal[node] = -1.0  # blocked for as long as this pattern lasts
+            return J, u
+        T[J] = -1.0  # blocked while this pattern lasts
 
 
 @kernel
-def follow(pattern, F1, knobs):
-    """Let `u` of F1 go where it goes when the traces have come to rest at ``u / (1 - d)``.
+def follow(I, u, k):
+    """Return where `u` goes while the traces come to rest at ``u / (1 - d)`` (fast learning).
 
-    There ``p = u / (1 - d)`` and hence ``q = u``, as with F2 silent, only that F1 starts from the
-    resonance. If all active components are above the noise, the loops just turn `u` to these
-    components of the pattern; as they do so slowly, they are spared the way.
+    There ``p = u / (1 - d)``, hence ``q = u``, as if F2 were silent. If everything active is above
+    the noise, the loops only turn `u` slowly toward the active part of the pattern. Then that is
+    where it is put at once.
     """
-    a, b, _, d, theta, e, smooth, tol, _ = knobs
-    u = F1[3]
-    silence = np.zeros(len(pattern))
-    total = 0.0
-    clear = not smooth
-    for i in range(len(u)):
-        if u[i] > 0.0:
-            clear = clear and u[i] >= theta and pattern[i] >= theta
-            total += pattern[i] * pattern[i]
-    if clear:
-        for i in range(len(u)):
-            u[i] = pattern[i] / math.sqrt(total) if u[i] > 0.0 else 0.0
-    expect(silence, F1, d, e)
+    active = u > 0.0
+    if not k.smooth and (np.minimum(I, u)[active] >= k.theta).all():
+        u = unit(np.where(active, I, 0.0))
+    silent, q = np.zeros(len(I)), u / (k.e + norm(u))
     for _ in range(MOST_CYCLES):
-        if cycle(pattern, silence, F1, a, b, d, theta, e, smooth) <= tol:
+        before = u
+        _, _, _, u, _, q = cycle(I, silent, u, q, k)
+        if change(u, before) <= k.tol:
             break
+    return u
 
 
 @kernel
-def learn(X, start, labels, top_down, bottom_up, counts, n, vigilance, rate, knobs):
-    """Present the patterns ``X[start:]`` in order; return where it stopped and how many categories.
-
-    It stops early when a category is to be founded and ``len(top_down)`` leaves no room for it.
-    """
-    d, bottom_up_start = knobs[3], knobs[8]
-    pattern, F1 = np.empty(X.shape[1]), np.empty((7, X.shape[1]))
-    steps, activity = np.empty((0, 4)), np.empty((0, 7, X.shape[1]))
-    for t in range(start, len(X)):
-        labels[t] = -1
-        if not enter(X[t], pattern):
-            continue
-        node, _ = present(pattern, F1, top_down, bottom_up, n, vigilance, knobs, steps, activity)
-        if node < 0:
-            continue
-        if node == n:
-            if n == len(top_down):
-                return t, n
-            n += 1
-            top_down[node] = 0.0
-            bottom_up[node] = bottom_up_start
-            counts[node] = 0
-        if rate == 1.0:
-            follow(pattern, F1, knobs)
-        for i in range(len(pattern)):
-            rest = F1[3, i] / (1.0 - d)
-            top_down[node, i] += rate * (rest - top_down[node, i])
-            bottom_up[node, i] += rate * (rest - bottom_up[node, i])
-        counts[node] += 1
-        labels[t] = node
-    return len(X), n
-
-
-@kernel
-def recall(X, labels, top_down, bottom_up, n, vigilance, knobs):
-    """Write the category in resonance with each pattern of `X` into `labels`, or -1."""
-    pattern, F1 = np.empty(X.shape[1]), np.empty((7, X.shape[1]))
-    steps, activity = np.empty((0, 4)), np.empty((0, 7, X.shape[1]))
+def learn(X, top_down, bottom_up, counts, n, k):
+    """Present the patterns in order; return their categories and the number of categories."""
+    labels = np.empty(len(X), np.int64)
     for t in range(len(X)):
-        node = -1
-        if enter(X[t], pattern):
-            node, _ = present(
-                pattern, F1, top_down, bottom_up, n, vigilance, knobs, steps, activity
-            )
-        labels[t] = node if node < n else -1
+        I = unit(X[t])
+        J, u = present(I, top_down, bottom_up, n, k)
+        labels[t] = J
+        if J < 0:
+            continue
+        if J == n:
+            n += 1
+            top_down[J] = 0.0  # eq 2.48
+            bottom_up[J] = k.start
+            counts[J] = 0
+        u = follow(I, u, k) if k.rate == 1.0 else u
+        top_down[J] += k.rate * (u / (1.0 - k.d) - top_down[J])  # eq 2.39, as 2.41 has it
+        bottom_up[J] += k.rate * (u / (1.0 - k.d) - bottom_up[J])  # eq 2.40, as 2.42 has it
+        counts[J] += 1
+    return labels, n
+
+
+@kernel
+def recall(X, top_down, bottom_up, n, k):
+    """Return the committed node in resonance with each pattern, or -1."""
+    labels = np.empty(len(X), np.int64)
+    for t in range(len(X)):
+        J, _ = present(unit(X[t]), top_down, bottom_up, n, k)
+        labels[t] = J if J < n else -1
+    return labels
 
 
 class ART2(Categories):
-    """Categories of analog patterns by the whole network: loops of F1, search in F2, reset.
+    """Categories of analog patterns by the whole network: loops in F1, search in F2, reset.
 
-    A pattern enters with unit norm (the stage F0), so its scale does not matter. F1 goes round its
+    A pattern enters with norm 1 (the stage F0), so its scale does not matter. F1 goes around its
     loops until `u` settles::
 
         w = I + a u         x = w / (e + |w|)       v = f(x) + b f(q)
         u = v / (e + |v|)   p = u + d z_J           q = p / (e + |p|)
 
-    at first with F2 silent (``p = u``), which frees the pattern of components below `theta`. F2
-    then chooses the node J of largest signal ``T_j = sum_i p_i z_ij``, whose expectation `z_J` is
-    sent down into `p`. While F1 settles with it, the orienting subsystem watches
-    ``r = (u + c p) / (e + |u| + |c p|)``: as soon as ``vigilance > e + |r|`` the node is reset and
+    At first F2 is silent (``p = u``), which clears components below `theta` from the pattern. F2
+    then chooses the node J of largest signal ``T_j = sum_i p_i z_ij`` and sends its expectation
+    `z_J` down into `p`. While F1 settles again, the orienting subsystem watches
+    ``r = (u + c p) / (e + |u| + |c p|)``. As soon as ``vigilance > e + |r|`` the node is reset. It
     stays blocked while the pattern lasts, F1 starts again from the pattern alone, and F2 chooses
-    again. If F1 settles, the network is in resonance, and the traces of J, up and down, follow
-    ``dz/dt = d (p - z)``, whose rest is ``u / (1 - d)``. An uncommitted node expects nothing, so
-    that r has norm 1 and it is never reset: the search ends there at the latest.
+    again. If F1 settles without a reset, the network is in resonance. Then the traces of J, up and
+    down, follow ``dz/dt = d (p - z)``, which comes to rest at ``u / (1 - d)``. An uncommitted node
+    expects nothing. There r has norm 1 and no reset is possible, so the search always ends.
 
-    Here vigilance is a similarity: the larger, the more categories. What it is compared with runs
-    only from about 0.75 to 1 with the c and d given (`match_norm`, figure 2.21).
+    Vigilance is a similarity here: the larger, the more categories. With the default c and d it is
+    compared with norms from about 0.75 to 1 only (`match_norm`, figure 2.21).
 
-    `predict` and `category` search as learning does, and give -1 where they end at an uncommitted
-    node: the pattern is new. A pattern of zeros, or with nothing above `theta`, belongs to
-    category -1 too. Features must not be negative, for an activity cannot be: shift them, or give
-    each feature two inputs, one that rises with it and one that falls.
+    `predict` and `category` search in the same way. They return -1 if the search ends at an
+    uncommitted node: the pattern is new. A pattern of zeros, or with nothing above `theta`, also
+    belongs to category -1. Features must not be negative, because activities are not. Shift them,
+    or give each feature two inputs, one that rises with it and one that falls.
 
     With fast learning and without noise (``theta=0``) a pattern just learned is matched perfectly.
-    With noise, a template can gain a component that F1 by itself would have cut, and with slow
-    learning the norm of `z_J` still grows: then the next presentation may end elsewhere, and at a
-    high vigilance often does.
+    With noise, a template can gain a component that F1 alone would have cut. With slow learning,
+    the norm of `z_J` still grows. In both cases the next presentation may end elsewhere, and at a
+    high vigilance it often does.
 
-    The thesis defines this network and runs another (`EuclideanART`), so it gives no parameters.
+    The thesis defines this network but runs another (`EuclideanART`), so it gives no parameters.
 
     Parameters
     ----------
@@ -292,34 +217,34 @@ class ART2(Categories):
     a, b : float > 0, default=10
         Strength of the feedback from `u` to `w` and from `q` to `v`; 10 is usual.
     c : float in (0, 1), default=0.1
-        Share of `p` in `r`. ``c d / (1 - d)`` must not exceed 1: soon beyond it the norm
-        of `r` rises again as a category learns, and a mismatch could become a match. The thesis
-        prints c < 0, with which a perfect match does not give norm 1.
+        Share of `p` in `r`. ``c d / (1 - d)`` must not exceed 1: soon beyond it the norm of `r`
+        rises again as a category learns, and a mismatch could become a match. The thesis prints
+        c < 0, with which a perfect match does not give norm 1.
     d : float in (0, 1), default=0.9
         Activity of the chosen node of F2.
     theta : float in [0, 1) or None, default=None
-        Activities of `x` and `q` below are noise. Above ``1 / sqrt(n_features)`` a pattern of equal
-        features would be silenced; None is half of that.
+        Activities of `x` and `q` below `theta` are noise. A `theta` above ``1 / sqrt(n_features)``
+        would silence a pattern of equal features. None means half of that.
     learning_rate : float in (0, 1], default=1
-        Part of the way to their rest that traces go in one presentation, ``1 - exp(-d (1 - d) t)``
-        for a presentation of duration t in units of the traces' own time. With 1 (fast learning)
-        `u` has the time to follow the traces; less is slow learning.
+        Fraction of the distance to their rest that traces move in one presentation:
+        ``1 - exp(-d (1 - d) t)`` for a presentation of duration t, in units of the traces' time
+        constant. With 1 (fast learning) `u` follows the traces to the end; less is slow learning.
     signal : {"linear", "smooth"}, default="linear"
-        The function f: 0 below `theta` (equations 2.34, 2.35), or ``2 theta x**2 / (x**2 +
+        The function f below `theta`: 0 (equations 2.34, 2.35) or ``2 theta x**2 / (x**2 +
         theta**2)`` (2.32, 2.33). At `theta` itself both give `theta`.
     start : float in (0, 1], default=0.5
-        Start of the bottom-up traces, as part of ``1 / ((1 - d) sqrt(n_features))``, above which
-        an uncommitted node could win over the node that has learned this very pattern. At the
-        bound, uncommitted nodes win often, whatever the vigilance. Top-down traces start at 0.
+        Start of the bottom-up traces, as a fraction of ``1 / ((1 - d) sqrt(n_features))``. Above
+        this bound an uncommitted node could beat the node that has learned this very pattern. At
+        the bound, uncommitted nodes win often, whatever the vigilance. Top-down traces start at 0.
     e : float in [0, 1), default=0
-        Keeps the divisions from failing; where all is silent, here 0 / 0 is 0.
+        Keeps divisors from being 0. With ``e=0``, 0 / 0 is 0.
     tol : float in (0, 1), default=1e-6
-        F1 has settled when no component of `u` changes by more in one cycle.
+        F1 has settled when no component of `u` changes by more than this in one cycle.
 
     Attributes
     ----------
     cluster_centers_ : ndarray of shape (n_clusters, n_features)
-        ``(1 - d) z_J``: the directions expected, of norm 1 once learning is complete (a copy).
+        ``(1 - d) z_J``: the expected directions, of norm 1 once learning is complete (a copy).
     top_down_, bottom_up_ : ndarray of shape (n_clusters, n_features)
         The traces (copies).
     counts_ : ndarray of shape (n_clusters,)
@@ -327,8 +252,8 @@ class ART2(Categories):
     n_clusters_ : int
         Number of categories.
     labels_ : ndarray of shape (n_samples,)
-        The category of each pattern of the last `fit` or `partial_fit`, as it was decided when
-        the pattern was presented. Traces move on, so `predict` may differ.
+        The category of each pattern of the last `fit` or `partial_fit`, decided when the pattern
+        was presented. Traces move on, so `predict` may differ.
     n_features_in_ : int
         Number of features.
     feature_names_in_ : ndarray of shape (n_features_in_,)
@@ -336,8 +261,8 @@ class ART2(Categories):
 
     Notes
     -----
-    Of scikit-learn's estimator checks one cannot pass: ``check_clustering`` feeds standardized
-    patterns, hence negative ones, though the class is tagged as for positive patterns only.
+    The class fails one of scikit-learn's estimator checks: ``check_clustering`` feeds standardized
+    patterns, some of them negative, although the class is tagged as for positive patterns only.
 
     References
     ----------
@@ -355,7 +280,7 @@ class ART2(Categories):
     array([[1., 0., 0.],
            [0., 0., 1.]])
 
-    What no category expects is new:
+    A pattern that no category expects is new:
 
     >>> art.predict([[0.0, 3.0, 0.0]])
     array([-1])
@@ -402,10 +327,10 @@ class ART2(Categories):
         -------
         DataFrame
             One row for each step and each feature; a step is one cycle of F1. Columns: `step`;
-            `node` of F2 (-1: silent; `n_clusters_`: an uncommitted one); `feature`; `input`, of
-            unit norm; the activities `w`, `x`, `v`, `u`, `p`, `q`; `r`; `signal` that the node
-            received; `norm_r` (NaN while F2 is silent); whether the step ended in `reset`; whether
-            the node is the `winner`, which it is in the last step only.
+            `node` of F2 (-1: silent; `n_clusters_`: uncommitted); `feature`; `input`, of norm 1;
+            the activities `w`, `x`, `v`, `u`, `p`, `q`; `r`; the `signal` that the node received;
+            `norm_r` (NaN while F2 is silent); `reset`, whether the step ended in one; `winner`,
+            true in the last step only, if a node won.
 
         Raises
         ------
@@ -428,38 +353,26 @@ class ART2(Categories):
         import pandas as pd
 
         check_is_fitted(self)
-        self._heed()
-        features = self._pattern(x)[0]
-        m = len(features)
-        pattern, F1 = np.zeros(m), np.empty((7, m))
-        traces = self._centers, self._bottom_up, self._n, self._settings[0], self._knobs
-        rows, room = 0, 64
-        while rows == 0 or rows > room:
-            room = max(room, rows)
-            steps, activity = np.empty((room, 4)), np.empty((room, 7, m))
-            winner = -1
-            if enter(features, pattern):
-                winner, rows = present(pattern, F1, *traces, steps, activity)
-            else:
-                rows, steps[0], activity[0] = 1, (-1, np.nan, np.nan, False), 0.0
-        each: dict[str, NDArray] = {
-            "step": np.arange(rows),
-            "node": steps[:rows, 0].astype(np.int64),
-        }
-        each |= {"signal": steps[:rows, 1], "norm_r": steps[:rows, 2]}
-        each |= {"reset": steps[:rows, 3] == 1, "winner": np.arange(rows) == rows - 1}
-        each["winner"] &= winner >= 0
-        table = pd.DataFrame({name: np.repeat(values, m) for name, values in each.items()})
-        table.insert(2, "feature", np.tile(np.arange(m), rows))
-        table.insert(3, "input", np.tile(pattern, rows))
-        for k, level in enumerate(LEVELS):
-            table.insert(4 + k, level, activity[:rows, k].ravel())
+        k, states = self._parameters(self.n_features_in_), list[tuple]()
+        I = unit(self._pattern(x)[0])
+        plain = getattr(present, "py_func", present)
+        winner, _ = plain(I, self._centers, self._bottom_up, self._n, k, states)
+        steps = [
+            pd.DataFrame(
+                {"step": step, "node": int(node), "feature": range(len(I)), "input": I}
+                | now._asdict()
+                | {"r": r, "signal": signal, "norm_r": norm_r, "reset": bool(reset)}
+            )
+            for step, (node, signal, norm_r, reset, now, r) in enumerate(states)
+        ]
+        table = pd.concat(steps, ignore_index=True)
+        table["winner"] = (table.step == len(states) - 1) & (winner >= 0)
         return table
 
     @property
     def cluster_centers_(self) -> Floats:
-        """The directions expected, ``(1 - d) z_J``, shape (n_clusters, n_features)."""
-        return (1.0 - self._knobs[3]) * self._centers[: self._n]
+        """The expected directions, ``(1 - d) z_J``, shape (n_clusters, n_features)."""
+        return (1.0 - self.d) * self._centers[: self._n]
 
     @property
     def top_down_(self) -> Floats:
@@ -483,45 +396,34 @@ class ART2(Categories):
             )
         return X
 
-    def _wishes(self) -> tuple:
-        return (
-            self.vigilance, self.a, self.b, self.c, self.d, self.theta, self.learning_rate,
-            self.signal, self.start, self.e, self.tol,
-        )  # fmt: skip
-
-    def _parameters(self) -> tuple:
+    def _parameters(self, n_features: int) -> Parameters:
         inside = {"open_low": True, "open_high": True}
         c, d = number("c", self.c, 0, 1, **inside), number("d", self.d, 0, 1, **inside)
         if c * d / (1 - d) > 1 + 1e-12:
             raise ValueError(f"c * d / (1 - d) must be <= 1, got {c * d / (1 - d):g}")
         if self.signal not in ("linear", "smooth"):
             raise ValueError(f"signal must be 'linear' or 'smooth', got {self.signal!r}")
-        return (
-            number("vigilance", self.vigilance, 0, 1, **inside),
-            number("learning_rate", self.learning_rate, 0, 1, open_low=True),
-            number("a", self.a, 0, **inside),
-            number("b", self.b, 0, **inside),
-            c,
-            d,
-            None if self.theta is None else number("theta", self.theta, 0, 1, open_high=True),
-            number("e", self.e, 0, 1, open_high=True),
-            self.signal == "smooth",
-            number("tol", self.tol, 0, 1, **inside),
-            number("start", self.start, 0, 1, open_low=True),
+        even = 1 / math.sqrt(n_features)  # a feature's activity where all are equal
+        theta = even / 2
+        if self.theta is not None:
+            theta = number("theta", self.theta, 0, 1, open_high=True)
+        return Parameters(
+            vigilance=number("vigilance", self.vigilance, 0, 1, **inside),
+            a=number("a", self.a, 0, **inside),
+            b=number("b", self.b, 0, **inside),
+            c=c,
+            d=d,
+            theta=theta,
+            e=max(number("e", self.e, 0, 1, open_high=True), TINY),
+            smooth=self.signal == "smooth" and theta > 0,
+            rate=number("learning_rate", self.learning_rate, 0, 1, open_low=True),
+            start=number("start", self.start, 0, 1, open_low=True) * even / (1 - d),
+            tol=number("tol", self.tol, 0, 1, **inside),
         )
 
-    def _arrange(self, capacity: int) -> None:
-        """Give the categories room for `capacity` of them, and relate parameters to their size."""
-        super()._arrange(capacity)
-        a, b, c, d, theta, e, smooth, tol, start = self._settings[2:]
-        even_share = 1 / math.sqrt(self._centers.shape[1])
-        theta = even_share / 2 if theta is None else theta
-        self._knobs = a, b, c, d, theta, e, smooth, tol, start * even_share / (1 - d)
+    def _learn_rows(self, X: Floats, parameters: Parameters) -> tuple[Labels, int]:
+        traces = self._centers, self._bottom_up
+        return learn(X, *traces, self._counts, self._n, parameters)
 
-    def _learn_rows(self, X: Floats, done: int, labels: Labels) -> tuple[int, int]:
-        traces = self._centers, self._bottom_up, self._counts, self._n
-        return learn(X, done, labels, *traces, *self._settings[:2], self._knobs)
-
-    def _recall_rows(self, X: Floats, labels: Labels) -> None:
-        traces = self._centers, self._bottom_up, self._n
-        recall(X, labels, *traces, self._settings[0], self._knobs)
+    def _recall_rows(self, X: Floats, parameters: Parameters) -> Labels:
+        return recall(X, self._centers, self._bottom_up, self._n, parameters)

@@ -1,121 +1,101 @@
-"""ART 2-A: categories by angle (section 4.2.1), the network the original ARKAQ used."""
+"""ART 2-A: categories by angle (section 4.2.1), the network that the original ARKAQ used."""
 
 from __future__ import annotations
 
-import math
+from typing import NamedTuple
 
 import numpy as np
 
 from arkaq_edu._checks import number
 from arkaq_edu._compiled import kernel
 from arkaq_edu.art._estimator import Categories, Floats, Labels
+from arkaq_edu.art.vectors import dot, unit
+
+
+class Parameters(NamedTuple):
+    """The parameters of the network."""
+
+    vigilance: float
+    beta: float
+    theta: float
 
 
 @kernel
-def normalize(x, unit):
-    """Write `x` scaled to norm 1 into `unit`; return false if it has no direction."""
-    peak = 0.0
-    for i in range(len(x)):
-        peak = max(peak, abs(x[i]))
-    if peak == 0.0:
-        return False
-    total = 0.0
-    for i in range(len(x)):
-        unit[i] = x[i] / peak  # first by the peak, so that no square leaves the range of a float
-        total += unit[i] * unit[i]
-    norm = math.sqrt(total)
-    for i in range(len(x)):
-        unit[i] /= norm
-    return True
+def enter(x, theta):
+    """Return `x` with norm 1 and without noise: the F0 stage. Zeros if nothing remains."""
+    x = unit(x)
+    return unit(np.where(np.abs(x) < theta, 0.0, x))
 
 
 @kernel
-def enter(x, theta, pattern):
-    """Write unit vector `x`, freed of components below `theta`, into `pattern`: the F0 stage."""
-    if not normalize(x, pattern):
-        return False
-    for i in range(len(x)):
-        if abs(pattern[i]) < theta:
-            pattern[i] = 0.0
-    return normalize(pattern, pattern)
-
-
-@kernel
-def most_aligned(pattern, templates, n):
+def choose(pattern, templates, n):
     """Return the template of largest cosine (of equals the first), and the cosine."""
-    best, best_cosine = -1, -np.inf
+    J, largest = -1, -np.inf
     for j in range(n):
-        cosine = 0.0
-        for i in range(len(pattern)):
-            cosine += pattern[i] * templates[j, i]
-        if cosine > best_cosine:
-            best, best_cosine = j, cosine
-    return best, best_cosine
+        cosine = dot(pattern, templates[j])  # eq 4.1 to 4.3: both have norm 1
+        if cosine > largest:
+            J, largest = j, cosine
+    return J, largest
 
 
 @kernel
-def learn(X, start, labels, templates, counts, n, vigilance, rate, theta):
-    """Present the patterns ``X[start:]`` in order; return where it stopped and how many templates.
-
-    It stops early when a category is to be founded and ``len(templates)`` leaves no room for it.
-    """
-    pattern, update = np.empty(X.shape[1]), np.empty(X.shape[1])
-    for t in range(start, len(X)):
-        labels[t] = -1
-        if not enter(X[t], theta, pattern):
-            continue
-        j, cosine = most_aligned(pattern, templates, n)
-        if cosine > vigilance:
-            counts[j] += 1
-            for i in range(len(pattern)):
-                # What a template has lost to noise it does not take up again.
-                update[i] = 0.0 if abs(templates[j, i]) < theta else pattern[i]
-            if normalize(update, update):
-                for i in range(len(pattern)):
-                    update[i] = rate * update[i] + (1.0 - rate) * templates[j, i]
-                normalize(update, templates[j])
-        else:
-            if n == len(templates):
-                return t, n
-            j = n
-            n += 1
-            templates[j] = pattern
-            counts[j] = 1
-        labels[t] = j
-    return len(X), n
-
-
-@kernel
-def recall(X, labels, templates, n, theta):
-    """Write the index of the most aligned template of each pattern of `X` into `labels`."""
-    pattern = np.empty(X.shape[1])
+def learn(X, templates, counts, n, parameters):
+    """Present the patterns in order; return their categories and the number of templates."""
+    vigilance, beta, theta = parameters
+    labels = np.full(len(X), -1)
     for t in range(len(X)):
-        labels[t] = -1
-        if enter(X[t], theta, pattern):
-            labels[t] = most_aligned(pattern, templates, n)[0]
+        x = enter(X[t], theta)
+        if not x.any():
+            continue
+        J, cosine = choose(x, templates, n)
+        if cosine > vigilance:
+            z = templates[J]
+            seen = unit(np.where(np.abs(z) < theta, 0.0, x))  # noise stays forgotten
+            turned = beta * seen + (1.0 - beta) * z
+            if turned.any():
+                templates[J] = unit(turned)
+            counts[J] += 1
+        else:
+            J, n = n, n + 1
+            templates[J] = x
+            counts[J] = 1
+        labels[t] = J
+    return labels, n
+
+
+@kernel
+def recall(X, templates, n, parameters):
+    """Return the most aligned template of each pattern."""
+    labels = np.full(len(X), -1)
+    for t in range(len(X)):
+        x = enter(X[t], parameters.theta)
+        if x.any():
+            labels[t], _ = choose(x, templates, n)
+    return labels
 
 
 class ART2A(Categories):
-    """Categories by angle: the most aligned template turns to the pattern, or one is founded.
+    """Categories by angle: the most aligned template turns to the pattern, or a new one is founded.
 
-    A pattern is scaled to unit norm, so that its dot product with a template, which has unit norm
-    too, is the cosine of the angle between them. If the cosine of the most aligned template is
-    strictly larger than `vigilance`, the template turns toward the pattern,
-    ``z = unit(beta * x + (1 - beta) * z)``; otherwise a new template is founded at the pattern.
-    (Where the two cancel, which takes a negative vigilance, the template stays.)
-    Here vigilance is a similarity: the larger, the more categories.
+    A pattern is scaled to norm 1. Templates have norm 1 too, so their dot product is the cosine of
+    the angle between them. If the cosine of the most aligned template is strictly larger than
+    `vigilance`, the template turns toward the pattern, ``z = unit(beta * x + (1 - beta) * z)``.
+    Otherwise a new template is founded at the pattern. (With a negative vigilance the two can
+    cancel; then the template stays.) Vigilance is a similarity here: the larger, the more
+    categories.
 
-    The thesis scales each feature to [-1, 1] and takes the norm to be 1 by that; it runs from 0 to
-    1.41, and the largest raw dot product then is seldom the largest cosine. Right is: first center
-    the features (the scaling to [-1, 1] does so), then scale each pattern to unit norm. It follows
-    that an angle says nothing of the distance from the center, and that with a single feature only
-    the patterns +1 and -1 remain. A pattern of zeros has no angle: it belongs to category -1.
+    The thesis scales each feature to [-1, 1] and takes the norm of the pattern to be 1. In fact it
+    runs from 0 to 1.41, and the largest raw dot product is seldom the largest cosine. Instead,
+    center the features first (scaling to [-1, 1] does so), then scale each pattern to norm 1. It
+    follows that an angle says nothing about the distance from the center, and that with a single
+    feature only the patterns +1 and -1 remain. A pattern of zeros has no angle: it belongs to
+    category -1.
 
-    `predict` and `category` give the most aligned template, however far (section 5.2.1).
+    `predict` and `category` return the most aligned template, however far (section 5.2.1).
 
-    The network is ART 2-A in the conservative limit (an uncommitted node is chosen only where no
-    template matches), with two liberties: features may be negative, the noise threshold then
-    holding for their magnitude; and the comparison is strict, as the thesis has it.
+    The network is ART 2-A in the conservative limit (an uncommitted node is chosen only if no
+    template matches), with two differences. Features may be negative; the noise threshold then
+    applies to their magnitude. And the comparison is strict, as in the thesis.
 
     Parameters
     ----------
@@ -125,20 +105,20 @@ class ART2A(Categories):
         Update factor beta; 1 puts a template on its latest pattern. The thesis never gives it;
         the default is that of `EuclideanART`.
     theta : float in [0, 1), default=0
-        Noise threshold: components of the unit pattern that are smaller are set to 0, and the rest
-        scaled to unit norm again. A pattern of which nothing remains belongs to category -1.
+        Noise threshold. Smaller components of the unit pattern are set to 0, and the rest is scaled
+        to norm 1 again. A pattern of which nothing remains belongs to category -1.
 
     Attributes
     ----------
     cluster_centers_ : ndarray of shape (n_clusters, n_features)
-        The templates, of unit norm, in the order in which they were founded (a copy).
+        The templates, of norm 1, in the order in which they were founded (a copy).
     counts_ : ndarray of shape (n_clusters,)
         How many patterns each template has learned, the one that founded it included (a copy).
     n_clusters_ : int
         Number of templates.
     labels_ : ndarray of shape (n_samples,)
-        The category of each pattern of the last `fit` or `partial_fit`, as it was decided when
-        the pattern was presented. Templates turn on, so `predict` may differ.
+        The category of each pattern of the last `fit` or `partial_fit`, decided when the pattern
+        was presented. Templates keep turning, so `predict` may differ.
     n_features_in_ : int
         Number of features.
     feature_names_in_ : ndarray of shape (n_features_in_,)
@@ -173,18 +153,15 @@ class ART2A(Categories):
         self.learning_rate = learning_rate
         self.theta = theta
 
-    def _wishes(self) -> tuple:
-        return self.vigilance, self.learning_rate, self.theta
-
-    def _parameters(self) -> tuple[float, float, float]:
-        return (
+    def _parameters(self, n_features: int) -> Parameters:
+        return Parameters(
             number("vigilance", self.vigilance, -1, 1, open_high=True),
             number("learning_rate", self.learning_rate, 0, 1, open_low=True),
             number("theta", self.theta, 0, 1, open_high=True),
         )
 
-    def _learn_rows(self, X: Floats, done: int, labels: Labels) -> tuple[int, int]:
-        return learn(X, done, labels, self._centers, self._counts, self._n, *self._settings)
+    def _learn_rows(self, X: Floats, parameters: Parameters) -> tuple[Labels, int]:
+        return learn(X, self._centers, self._counts, self._n, parameters)
 
-    def _recall_rows(self, X: Floats, labels: Labels) -> None:
-        recall(X, labels, self._centers, self._n, self._settings[2])
+    def _recall_rows(self, X: Floats, parameters: Parameters) -> Labels:
+        return recall(X, self._centers, self._n, parameters)

@@ -3,14 +3,58 @@
 from __future__ import annotations
 
 import sys
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from arkaq_edu._checks import array, integer, number
+from arkaq_edu._compiled import kernel
 from arkaq_edu.art._estimator import Categories, Floats, Labels
-from arkaq_edu.art.index import half_cells_per_unit, learn, link_all, recall
+from arkaq_edu.art.index import Index, add, build, nearest, nearest_of_all, remove
+
+
+class Parameters(NamedTuple):
+    """The parameters of the rule; an `eta` of 0 stands for one over the count."""
+
+    vigilance: float
+    eta: float
+    max_clusters: int
+
+
+@kernel
+def learn(X, centers, counts, n, index, parameters):
+    """Present the patterns in order; return their categories and the number of centers."""
+    vigilance, eta, max_clusters = parameters
+    labels = np.empty(len(X), np.int64)
+    for t in range(len(X)):
+        x = X[t]
+        i, distance = nearest(x, centers, index)  # eq 4.4 and 4.5
+        if distance < vigilance:
+            counts[i] += 1
+            step = eta if eta > 0.0 else 1.0 / counts[i]
+            remove(i, centers, index)
+            centers[i] += step * (x - centers[i])  # eq 4.6
+            add(i, centers, index)
+        elif n < max_clusters:
+            i, n = n, n + 1
+            centers[i] = x
+            counts[i] = 1
+            add(i, centers, index)
+        else:
+            i = nearest_of_all(x, centers, n)
+        labels[t] = i
+    return labels, n
+
+
+@kernel
+def recall(X, centers, n, index):
+    """Return the nearest center of each pattern, however far."""
+    labels = np.empty(len(X), np.int64)
+    for t in range(len(X)):
+        i, _ = nearest(X[t], centers, index)
+        labels[t] = i if i >= 0 else nearest_of_all(X[t], centers, n)
+    return labels
 
 
 class EuclideanART(Categories):
@@ -18,34 +62,34 @@ class EuclideanART(Categories):
 
     For each pattern `x`, in the order of presentation, the nearest center `m` is found. If its
     distance is strictly smaller than `vigilance`, it moves toward the pattern,
-    ``m += eta * (x - m)``; otherwise a new center is founded at `x`. Of centers equally near the
+    ``m += eta * (x - m)``. Otherwise a new center is founded at `x`. Of centers equally near, the
     one founded first is taken.
 
     The literature knows this as leader clustering with an online k-means update. It has neither
-    the F1 loops of ART2 nor its normalization; what it shares with the family is that recognizing
-    and learning are one act, gated by a vigilance. Here vigilance is a distance: the smaller, the
-    more categories. `predict` and `category` give the nearest center, however far.
+    the F1 loops of ART2 nor its normalization. What it shares with the family is that recognizing
+    and learning are one act, gated by a vigilance. Vigilance is a distance here: the smaller, the
+    more categories. `predict` and `category` return the nearest center, however far.
 
     Two choices decide whether counts of centers can be compared between programs at all. The
     comparison is strict: a pattern at a distance of exactly `vigilance` founds a center. And the
     update factor is fixed at `learning_rate`, as in the thesis, so that a center follows its
-    latest patterns; the online k-means of the textbooks, whose center is the mean of its
-    patterns, is ``learning_rate="count"``.
+    latest patterns. In the online k-means of the textbooks a center is the mean of its patterns;
+    that is ``learning_rate="count"``.
 
-    The work per pattern does not grow with the number of centers as long as these differ in their
-    first three features and lie within 10**8 vigilances of the origin; the centers are those of a
-    search through all of them, to the last bit.
+    The work per pattern does not grow with the number of centers, as long as these differ in their
+    first two features (`arkaq_edu.art.index`). The result is that of a search through all centers,
+    to the last bit.
 
     Parameters
     ----------
     vigilance : float in [1e-150, 1e150], default=0.1
         Distance below which a pattern belongs to a center, in the units of the patterns.
     learning_rate : float in (0, 1] or "count", default=0.5
-        Update factor eta. The thesis never gives it; its counts of centers speak for about 0.5.
-        ``"count"``: one over the number of patterns the center has learned, this one included.
+        Update factor eta. The thesis never gives it; its counts of centers suggest about 0.5.
+        ``"count"`` means one over the number of patterns the center has learned, this one included.
     max_clusters : int >= 1 or None, default=None
-        Greatest number of centers. Once there are so many, a pattern that would found another
-        belongs to its nearest center, however far; nothing is learned from it.
+        Greatest number of centers. Once it is reached, a pattern that would found another center
+        belongs to its nearest center, however far, and nothing is learned from it.
 
     Attributes
     ----------
@@ -56,8 +100,8 @@ class EuclideanART(Categories):
     n_clusters_ : int
         Number of centers.
     labels_ : ndarray of shape (n_samples,)
-        The category of each pattern of the last `fit` or `partial_fit`, as it was decided when
-        the pattern was presented. Centers move on, so `predict` on the same patterns may differ.
+        The category of each pattern of the last `fit` or `partial_fit`, decided when the pattern
+        was presented. Centers move on, so `predict` on the same patterns may differ.
     n_features_in_ : int
         Number of features.
     feature_names_in_ : ndarray of shape (n_features_in_,)
@@ -72,7 +116,7 @@ class EuclideanART(Categories):
 
     Examples
     --------
-    The second pattern is near enough to the first center, the third is not:
+    The second pattern is near the first center, the third is not:
 
     >>> art = EuclideanART(vigilance=0.5, learning_rate=0.5)
     >>> art.fit([[0.0, 0.0], [0.25, 0.0], [1.0, 1.0]]).cluster_centers_
@@ -113,11 +157,11 @@ class EuclideanART(Categories):
         learning_rate: float | str = 0.5,
         max_clusters: int | None = None,
     ) -> Self:
-        """Return a fitted estimator with given centers: the way back from a file.
+        """Return a fitted estimator with given centers, for example from a file.
 
-        `cluster_centers_`, `counts_` and the parameters are all there is to save: what is learned
-        from then on is, to the last bit, what the saved estimator would have learned. `labels_` is
-        empty until the next `fit` or `partial_fit`.
+        `cluster_centers_`, `counts_` and the parameters are the whole state. The new estimator
+        learns exactly what the saved one would have learned. `labels_` is empty until the next
+        `fit` or `partial_fit`.
 
         Parameters
         ----------
@@ -144,44 +188,46 @@ class EuclideanART(Categories):
         self = cls(vigilance, learning_rate, max_clusters)
         places = array("centers", centers, (None, None))
         if 0 in places.shape:
-            raise ValueError(f"centers must have a row and a column at least, got {places.shape}")
+            raise ValueError(
+                f"centers must have at least one row and one column, got {places.shape}"
+            )
         taken = array("counts", counts, (len(places),))
         if (taken < 1).any() or (taken % 1 != 0).any():
             raise ValueError(f"counts must be integers >= 1, got {counts!r}")
-        self._begin(_centers=places, _counts=taken.astype(np.int64))
         self.n_features_in_ = places.shape[1]
+        self._parameters(self.n_features_in_)
+        self._centers, self._counts, self._n = places, taken.astype(np.int64), len(places)
+        self._resize(self._n)
+        self.labels_ = np.empty(0, np.int64)
         return self
 
-    def _wishes(self) -> tuple:
-        return self.vigilance, self.learning_rate, self.max_clusters
-
-    def _parameters(self) -> tuple[float, float, int]:
-        """Return vigilance, update factor (0: one over the count) and limit, validated."""
-        # Beyond these limits the square of the vigilance would leave the range of a float.
+    def _parameters(self, n_features: int) -> Parameters:
+        # Squares of distances stay in the range of a float between these limits.
         vigilance = number("vigilance", self.vigilance, 1e-150, 1e150)
         limit = sys.maxsize
         if self.max_clusters is not None:
             limit = integer("max_clusters", self.max_clusters, 1)
+        if self.learning_rate == "count":
+            return Parameters(vigilance, 0.0, limit)
         if isinstance(self.learning_rate, str):
-            if self.learning_rate != "count":
-                allowed = "a number in (0, 1] or 'count'"
-                raise ValueError(f"learning_rate must be {allowed}, got {self.learning_rate!r}")
-            return vigilance, 0.0, limit
-        return vigilance, number("learning_rate", self.learning_rate, 0, 1, open_low=True), limit
+            allowed = "a number in (0, 1] or 'count'"
+            raise ValueError(f"learning_rate must be {allowed}, got {self.learning_rate!r}")
+        eta = number("learning_rate", self.learning_rate, 0, 1, open_low=True)
+        return Parameters(vigilance, eta, limit)
 
-    def _arrange(self, capacity: int) -> None:
-        """Give the centers room for `capacity` of them, and build their table anew."""
-        super()._arrange(capacity)
-        self._scale = half_cells_per_unit(self._settings[0])
-        self._heads = np.empty(2 << capacity.bit_length(), np.int64)
-        self._nexts = np.empty(capacity, np.int64)
-        link_all(self._centers, self._n, self._heads, self._nexts, self._scale)
+    def _resize(self, capacity: int) -> None:
+        super()._resize(capacity)
+        self._index = build(self._centers, self._n, self.vigilance)
 
-    def _learn_rows(self, X: Floats, done: int, labels: Labels) -> tuple[int, int]:
-        return learn(
-            X, done, labels, self._centers, self._counts, self._n, self._heads, self._nexts,
-            self._scale, *self._settings,
-        )  # fmt: skip
+    def _indexed(self, vigilance: float) -> Index:
+        """Return the index of the centers, built anew if the vigilance has changed."""
+        if self._index.vigilance != vigilance:
+            self._index = build(self._centers, self._n, vigilance)
+        return self._index
 
-    def _recall_rows(self, X: Floats, labels: Labels) -> None:
-        recall(X, labels, self._centers, self._n, self._heads, self._nexts, self._scale)
+    def _learn_rows(self, X: Floats, parameters: Parameters) -> tuple[Labels, int]:
+        index = self._indexed(parameters.vigilance)
+        return learn(X, self._centers, self._counts, self._n, index, parameters)
+
+    def _recall_rows(self, X: Floats, parameters: Parameters) -> Labels:
+        return recall(X, self._centers, self._n, self._indexed(parameters.vigilance))

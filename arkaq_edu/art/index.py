@@ -1,176 +1,138 @@
-"""Find the nearest of many moving centers without looking at all of them.
+"""An index with one job: find the center nearest to a pattern without looking at all centers.
 
-Space is cut into cubic cells two vigilances wide, and a hash table says which centers lie in which
-cell. Everything nearer than one vigilance to a pattern then lies in the two cells per axis that a
-box around the pattern touches; a nearest center further off is found by widening the box. So the
-work per pattern depends on how crowded a cell is, not on how many centers there are in all.
+The plane of the first two features is cut into square cells, a little wider than the vigilance. A
+hash table lists the centers of each cell. Every center nearer than the vigilance then lies in one
+of the nine cells around the pattern, so the work depends on how crowded a cell is, not on how
+many centers there are.
 
-The answer is that of comparing with every center, to the last bit and ties included, because
-distances are computed in the same way and only centers that cannot win are left out. So the
-arrangement of the table never shows in a result, and it can be rebuilt from the centers.
-
-The table is a pair of integer arrays: ``heads[b]`` is the first center of bucket `b`, ``nexts[c]``
-the center after `c` in its bucket, -1 the end. Cells that share a bucket cost time, not exactness.
-
-The learning rule, `learn`, stands at the end of this file and not with its class: numba's cache
-knows only the file of the function it compiled, and would miss a change in another.
+The answer is exactly that of comparing the pattern with every center, ties included. Distances are
+computed in the same way, and only centers at least a vigilance away are skipped.
 """
 
+from __future__ import annotations
+
 import math
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from arkaq_edu._compiled import kernel
-from arkaq_edu.art._inlined import inlined
 
-ANY_DISTANCE = 1 << 30  # a reach that no search uses up
-# Half a cell is a hair more than a vigilance, so that rounding a place (by less than 2**-22 half
-# cells) cannot put a center less than a vigilance away outside the box around a pattern.
-_A_HAIR_LESS = 1.0 - 2.0**-20
-_FARTHEST = 2.0**28
+# Rounding shifts a place by less than 2**-24 cells. Cells wider by 2**-20 make up for it.
+_ROOM_FOR_ROUNDING = 1.0 - 2.0**-20
+# All cells further out count as this one, so that a cell's number always fits an integer.
+_OUTERMOST = 2.0**28
 
 
-def half_cells_per_unit(vigilance: float) -> float:
-    """Return the `scale` of the grid for a vigilance."""
-    return _A_HAIR_LESS / vigilance
+class Index(NamedTuple):
+    """A hash table of centers: `heads[b]` starts the list of bucket `b`, `nexts` continues it.
+
+    The end of a list is -1. Cells that share a bucket cost time, never exactness.
+    """
+
+    vigilance: float
+    cells_per_unit: float
+    heads: NDArray[np.int64]
+    nexts: NDArray[np.int64]
+
+
+def build(centers: NDArray[np.float64], n: int, vigilance: float) -> Index:
+    """Return an index of the first `n` centers, with room for as many as `centers` has rows.
+
+    Examples
+    --------
+    >>> centers = np.array([[0.0, 0.0], [1.0, 1.0]])
+    >>> index = build(centers, 2, vigilance=0.5)
+    >>> nearest(np.array([0.3, 0.0]), centers, index)
+    (0, 0.3)
+    >>> nearest(np.array([0.5, 0.0]), centers, index)
+    (-1, inf)
+    """
+    capacity = len(centers)
+    heads = np.full(2 << capacity.bit_length(), -1)  # a power of two, at most half full
+    vigilance = float(vigilance)
+    index = Index(vigilance, _ROOM_FOR_ROUNDING / vigilance, heads, np.empty(capacity, np.int64))
+    add_all(n, centers, index)
+    return index
 
 
 @kernel
-def place(coordinate, scale):
-    """Return in which half cell `coordinate` lies, along one axis."""
-    # Everything very far out shares the outermost one: no two points get further apart by that.
-    return int(np.floor(min(max(coordinate * scale, -_FARTHEST), _FARTHEST)))
+def cell(x, axis, index):
+    """Return the number of the cell of `x` along an axis."""
+    if axis >= len(x):
+        return 0
+    place = x[axis] * index.cells_per_unit
+    return math.floor(min(max(place, -_OUTERMOST), _OUTERMOST))
 
 
 @kernel
-def locate(x, scale):
-    """Return the half cell of `x` along its first three axes, 0 along those it lacks."""
-    j = place(x[1], scale) if len(x) > 1 else 0
-    k = place(x[2], scale) if len(x) > 2 else 0
-    return place(x[0], scale), j, k
+def bucket(row, column, index):
+    """Return the bucket of a cell."""
+    return ((row * 73856093 + column * 19349663) >> 12) & (len(index.heads) - 1)
 
 
 @kernel
-def hashed(i, j, k, n_buckets):
-    """Return the bucket of cell (i, j, k); `n_buckets` is a power of two."""
-    return ((i * 73856093 + j * 19349663 + k * 83492791) >> 12) & (n_buckets - 1)
+def nearest(x, centers, index):
+    """Return the nearest center and its distance, or -1 and infinity beyond the vigilance."""
+    best, best_d2 = -1, np.inf
+    row, column = cell(x, 0, index), cell(x, 1, index)
+    for r in range(row - 1, row + 2):
+        for c in range(column - 1, column + 2):
+            i = index.heads[bucket(r, c, index)]
+            while i >= 0:
+                d2 = squared_distance(x, centers, i)
+                if d2 < best_d2 or (d2 == best_d2 and i < best):
+                    best, best_d2 = i, d2
+                i = index.nexts[i]
+    distance = math.sqrt(best_d2)
+    return (best, distance) if distance < index.vigilance else (-1, np.inf)
 
 
 @kernel
-def bucket_of(x, scale, n_buckets):
-    """Return the bucket of the cell in which `x` lies."""
-    i, j, k = locate(x, scale)
-    return hashed(i >> 1, j >> 1, k >> 1, n_buckets)
+def nearest_of_all(x, centers, n):
+    """Return the nearest of the first `n` centers, however far."""
+    best, best_d2 = 0, np.inf
+    for i in range(n):
+        d2 = squared_distance(x, centers, i)
+        if d2 < best_d2:
+            best, best_d2 = i, d2
+    return best
 
 
-@inlined
-def closer(x, centers, c, best, best_d2):
-    """Return the nearer of center `c` and the best so far; of equals, the lower index."""
-    d2 = 0.0
+@kernel
+def squared_distance(x, centers, i):
+    """Return the squared distance of `x` from center `i`."""
+    total = 0.0
     for axis in range(len(x)):
-        gap = x[axis] - centers[c, axis]
-        d2 += gap * gap
-    # & and |, unlike `and` and `or`, leave the processor no branch to guess wrong.
-    better = (d2 < best_d2) | ((d2 == best_d2) & (c < best))
-    return (c if better else best), (d2 if better else best_d2)
+        gap = x[axis] - centers[i, axis]
+        total += gap * gap
+    return total
 
 
 @kernel
-def nearest(x, centers, n, heads, nexts, scale, reach):
-    """Return the nearest of the first `n` centers and its squared distance.
-
-    The search ends at `reach` vigilances. Where no center is that near, what is returned is some
-    center further off, or none (index ``len(centers)``, distance infinite).
-    """
-    at_i, at_j, at_k = locate(x, scale)
-    best, best_d2 = len(centers), np.inf
-    radius = 1
-    while True:
-        first_i, last_i = (at_i - radius) >> 1, (at_i + radius) >> 1
-        first_j, last_j = ((at_j - radius) >> 1, (at_j + radius) >> 1) if len(x) > 1 else (0, 0)
-        first_k, last_k = ((at_k - radius) >> 1, (at_k + radius) >> 1) if len(x) > 2 else (0, 0)
-        if (last_i - first_i + 1) * (last_j - first_j + 1) * (last_k - first_k + 1) > n:
-            break
-        for i in range(first_i, last_i + 1):
-            for j in range(first_j, last_j + 1):
-                for k in range(first_k, last_k + 1):
-                    c = heads[hashed(i, j, k, len(heads))]
-                    while c >= 0:
-                        best, best_d2 = closer(x, centers, c, best, best_d2)
-                        c = nexts[c]
-        # Centers outside the box are at least `radius` half cells away, rounding apart.
-        if radius >= reach or math.sqrt(best_d2) * scale < radius * _A_HAIR_LESS:
-            return best, best_d2
-        radius *= 2
-    for c in range(n):  # there are fewer centers than cells in the box
-        best, best_d2 = closer(x, centers, c, best, best_d2)
-    return best, best_d2
+def add(i, centers, index):
+    """List center `i` under the cell in which it lies."""
+    b = bucket(cell(centers[i], 0, index), cell(centers[i], 1, index), index)
+    index.nexts[i] = index.heads[b]
+    index.heads[b] = i
 
 
 @kernel
-def link(c, bucket, heads, nexts):
-    """Put center `c` into `bucket`."""
-    nexts[c] = heads[bucket]
-    heads[bucket] = c
+def add_all(n, centers, index):
+    """List the first `n` centers."""
+    for i in range(n):
+        add(i, centers, index)
 
 
 @kernel
-def unlink(c, bucket, heads, nexts):
-    """Take center `c` out of `bucket`."""
-    if heads[bucket] == c:
-        heads[bucket] = nexts[c]
+def remove(i, centers, index):
+    """Take center `i` off its list, before it moves."""
+    b = bucket(cell(centers[i], 0, index), cell(centers[i], 1, index), index)
+    if index.heads[b] == i:
+        index.heads[b] = index.nexts[i]
         return
-    before = heads[bucket]
-    while nexts[before] != c:
-        before = nexts[before]
-    nexts[before] = nexts[c]
-
-
-@kernel
-def link_all(centers, n, heads, nexts, scale):
-    """Build the table of the first `n` centers anew."""
-    for bucket in range(len(heads)):
-        heads[bucket] = -1
-    for c in range(n):
-        link(c, bucket_of(centers[c], scale, len(heads)), heads, nexts)
-
-
-@kernel
-def learn(X, start, labels, centers, counts, n, heads, nexts, scale, vigilance, rate, limit):
-    """Present the patterns ``X[start:]`` in order; return where it stopped and how many centers.
-
-    It stops early when a center is to be founded and ``len(centers)`` leaves no room for it.
-    A `rate` of 0 stands for one over the count.
-    """
-    for t in range(start, len(X)):
-        x = X[t]
-        j, d2 = nearest(x, centers, n, heads, nexts, scale, 1)
-        if math.sqrt(d2) < vigilance:
-            counts[j] += 1
-            eta = rate if rate > 0 else 1.0 / counts[j]
-            old = bucket_of(centers[j], scale, len(heads))
-            for i in range(len(x)):
-                centers[j, i] += eta * (x[i] - centers[j, i])
-            new = bucket_of(centers[j], scale, len(heads))
-            if new != old:
-                unlink(j, old, heads, nexts)
-                link(j, new, heads, nexts)
-        elif n < limit:
-            if n == len(centers):
-                return t, n
-            j = n
-            n += 1
-            centers[j] = x
-            counts[j] = 1
-            link(j, bucket_of(x, scale, len(heads)), heads, nexts)
-        else:
-            j, d2 = nearest(x, centers, n, heads, nexts, scale, ANY_DISTANCE)
-        labels[t] = j
-    return len(X), n
-
-
-@kernel
-def recall(X, labels, centers, n, heads, nexts, scale):
-    """Write the index of the nearest center of each pattern of `X` into `labels`."""
-    for t in range(len(X)):
-        labels[t] = nearest(X[t], centers, n, heads, nexts, scale, ANY_DISTANCE)[0]
+    before = index.heads[b]
+    while index.nexts[before] != i:
+        before = index.nexts[before]
+    index.nexts[before] = index.nexts[i]

@@ -264,7 +264,7 @@ def test_bad_batches_are_refused_as_scikit_learn_does(X, message):
     ("centers", "counts", "message"),
     [
         ([1.0, 2.0], [1, 1], r"centers must have shape \(any, any\), got \(2,\)"),
-        (np.empty((0, 2)), [], r"centers must have a row and a column at least, got \(0, 2\)"),
+        (np.empty((0, 2)), [], r"centers must have at least one row and one column, got \(0, 2\)"),
         ([[np.nan]], [1], r"centers must hold finite numbers"),
         ([[1.0]], [1, 2], r"counts must have shape \(1,\), got \(2,\)"),
         ([[1.0]], [0], r"counts must be integers >= 1, got \[0\]"),
