@@ -1,6 +1,7 @@
 """The thesis's experiments: configuration in, tidy tables out.
 
 - `streams`: sightings recorded on the field, and what they say of the senses;
+- `segmentation`: the recorded stream cut into categories, and their map;
 - `approach`: training, walking to the ball, and how well it is done;
 - `goal`: training, kicking, and how well it is done: the second problem;
 - `aiming`: where kicks go, kept and laid before any goal: the second problem without its physics;
@@ -12,7 +13,7 @@ import lazy_loader as _lazy
 
 __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
-    submodules=["aiming", "goal"],
+    submodules=["aiming", "goal", "segmentation"],
     submod_attrs={
         "approach": [
             "STARTS",

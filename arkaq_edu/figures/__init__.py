@@ -8,7 +8,7 @@ import lazy_loader as _lazy
 __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
     submodules=[
-        "arkaq", "art", "belief", "distance", "drawing", "field",
+        "arkaq", "art", "belief", "drawing", "field",
         "gallery", "goal", "kalman", "learning", "mdp", "policy", "pomdp",
         "segmentation", "trajectories",
     ],

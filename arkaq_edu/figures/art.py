@@ -16,82 +16,32 @@ once learned, vigilance 0.95 resets a cosine below 0.76 (c = 0.1, d = 0.9)
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PatchCollection
-from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Rectangle
 from matplotlib.text import Text
 from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu import _checks
-from arkaq_edu.art import match_norm
+from arkaq_edu.art import learned_norm, match_norm, reset_fact
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.figures.drawing.diagram import Diagram, blank, box, frame, node, wire, words
+from arkaq_edu.figures.drawing.diagram import blank, box, frame, node, wire, words
+from arkaq_edu.figures.drawing.plot import Plot
 
 if TYPE_CHECKING:
     import pandas as pd
-
-#: Letters of five by five points, row by row from the top.
-LETTERS = {
-    name: np.array([int(point) for point in rows.replace(" ", "")])
-    for name, rows in {
-        "L": "10000 10000 10000 10000 11111",
-        "T": "11111 00100 00100 00100 00100",
-        "F": "11111 10000 11110 10000 10000",
-        "E": "11111 10000 11110 10000 11111",
-        "I": "00100 00100 00100 00100 00100",
-        "H": "10001 10001 11111 10001 10001",
-        "P": "11110 10001 11110 10000 10000",
-        "U": "10001 10001 10001 10001 01110",
-    }.items()
-}
 
 #: Cosines between `u` and the expectation for which figure 2.21 draws a curve.
 COSINES = (1.0, 0.8, 0.6, 0.4, 0.2, 0.0)
 
 
-class ResetPlot(NamedTuple):
-    """What `figure_2_21` drew: a curve for each cosine, and the vigilance."""
-
-    ax: Axes
-    curves: dict[float, Line2D]
-    vigilance: Line2D
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return self.ax.get_title(loc="left")
-
-
-class GridsPlot(NamedTuple):
-    """What `plot_letters` or `plot_search` drew: for each grid, its filled points, and words."""
-
-    ax: Axes
-    grids: list[NDArray[np.bool_]]
-    words: list[Text]
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return self.ax.get_title(loc="left") or f"{len(self.grids)} grids"
-
-
-class SettlingPlot(NamedTuple):
-    """What `plot_settling` drew: a line for each feature."""
-
-    ax: Axes
-    lines: list[Line2D]
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return self.ax.get_title(loc="left")
-
-
 # Diagrams
 
 
-def figure_2_18(ax: Axes | None = None) -> Diagram:
+def figure_2_18(ax: Axes | None = None) -> Plot:
     """Draw figure 2.18, the two layers of an ART network and the traces between them."""
     ax = blank(
         ax,
@@ -120,10 +70,10 @@ def figure_2_18(ax: Axes | None = None) -> Diagram:
         ("F2", "F1"): wire(ax, (2.7, 2.0), (2.7, 0.4)),
     }
     wires |= {("I", f"F1 {i}"): wire(ax, (x, -1.2), (x, -0.4)) for i, (x, _) in enumerate(features)}
-    return Diagram(ax, parts, wires)
+    return Plot(ax, parts=parts, wires=wires)
 
 
-def figure_2_19(ax: Axes | None = None) -> Diagram:
+def figure_2_19(ax: Axes | None = None) -> Plot:
     """Draw figure 2.19, ART1: two gains, the attentional and the orienting subsystem."""
     ax = blank(ax, "ART1: attention matches, orientation resets", (-0.6, 10.0), (-0.1, 6.8))
     frame(ax, (-0.3, 1.5), 6.0, 5.1)
@@ -154,10 +104,10 @@ def figure_2_19(ax: Axes | None = None) -> Diagram:
         ("F1", "A"): wire(ax, (5.1, 2.4), (6.9, 2.4), sign="−"),
         ("A", "F2"): wire(ax, (8.9, 2.4), (9.7, 2.4), (9.7, 5.2), (5.1, 5.2)),
     }
-    return Diagram(ax, parts, wires)
+    return Plot(ax, parts=parts, wires=wires)
 
 
-def figure_2_20(ax: Axes | None = None) -> Diagram:
+def figure_2_20(ax: Axes | None = None) -> Plot:
     """Draw figure 2.20, ART2: the loops of F1 between the input and F2, and the reset."""
     ax = blank(ax, "ART2: the loops of F1; black dots divide by norms", (-5.2, 3.8), (-1.6, 6.1))
     places = {
@@ -191,101 +141,30 @@ def figure_2_20(ax: Axes | None = None) -> Diagram:
         ("p", "r"): wire(ax, (-0.32, 3.49), (-2.28, 2.81), norm=True),
         ("r", "y"): wire(ax, (-2.6, 3.04), (-2.6, 5.6), (-0.5, 5.6)),
     }
-    return Diagram(ax, parts, wires)
+    return Plot(ax, parts=parts, wires=wires)
 
 
 # The reset
 
 
-def reset_cosine(vigilance: float, cdz: ArrayLike, c: float) -> NDArray[np.float64]:
-    """Return the cosine below which a node is reset; 0 where none of [0, 1] is.
-
-    Parameters
-    ----------
-    vigilance : float in (0, 1)
-        What the norm of r has to reach.
-    cdz : array_like
-        Norm of ``c d z_J``, not negative.
-    c : float in (0, 1)
-        As in `arkaq_edu.art.ART2`.
-
-    Returns
-    -------
-    array of the shape of `cdz`
-        Cosines of the angle between `u` and `z_J`, from 0 to 1.
-
-    Notes
-    -----
-    With ``s = norm(c p)``, equation 2.47 is quadratic in s:
-    ``((1 + c) / c - r**2) s**2 - 2 r**2 s + 1 + c - r**2 - cdz**2 / c = 0``.
-
-    Examples
-    --------
-    >>> from arkaq_edu.art import match_norm
-    >>> cosine = reset_cosine(0.95, 0.9, c=0.1)
-    >>> cosine.round(3), match_norm(cosine, 0.9, c=0.1).round(3)
-    (np.float64(0.764), np.float64(0.95))
-    """
-    inside = {"open_low": True, "open_high": True}
-    r2 = _checks.number("vigilance", vigilance, 0, 1, **inside) ** 2
-    c = _checks.number("c", c, 0, 1, **inside)
-    cdz = np.asarray(cdz, dtype=float)
-    square, rest = (1 + c) / c - r2, 1 + c - r2 - cdz**2 / c
-    inner = r2**2 - square * rest
-    s = (r2 + np.sqrt(np.maximum(inner, 0))) / square
-    with np.errstate(divide="ignore", invalid="ignore"):
-        cosine = (s**2 - c**2 - cdz**2) / (2 * c * cdz)
-    return np.where((inner >= 0) & (cdz > 0), np.clip(cosine, 0, 1), 0.0)
-
-
-def reset_fact(c: float, d: float, vigilance: float) -> str:
-    """Say which cosines a node that has learned all it can is reset at.
-
-    Examples
-    --------
-    >>> reset_fact(0.1, 0.9, 0.95)
-    'once learned, vigilance 0.95 resets a cosine below 0.76 (c = 0.1, d = 0.9)'
-    >>> reset_fact(0.1, 0.9, 0.7)
-    'once learned, vigilance 0.7 never resets (c = 0.1, d = 0.9)'
-    >>> reset_fact(0.3, 0.9, 0.95)
-    'c d / (1 - d) is 2.7 and must not exceed 1 (c = 0.3, d = 0.9)'
-    """
-    end, knobs = learned_norm(c, d), f"(c = {c:g}, d = {d:g})"
-    if end > 1 + 1e-12:
-        return f"c d / (1 - d) is {end:.3g} and must not exceed 1 {knobs}"
-    cosine = float(reset_cosine(vigilance, end, c))
-    resets = f"resets a cosine below {cosine:.2f}" if cosine > 0 else "never resets"
-    return f"once learned, vigilance {vigilance:g} {resets} {knobs}"
-
-
-def learned_norm(c: float, d: float) -> float:
-    """Return the norm of ``c d z_J`` at the end of learning, where ``norm(z_J) = 1 / (1 - d)``.
-
-    Examples
-    --------
-    >>> round(learned_norm(0.1, 0.9), 3)
-    0.9
-    """
-    return c * d / (1 - d)
-
-
 def figure_2_21(
     ax: Axes | None = None, *, c: float = 0.1, d: float = 0.9, vigilance: float = 0.95
-) -> ResetPlot:
+) -> Plot:
     """Draw figure 2.21, what the orienting subsystem sees while a category learns (eq 2.47).
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; new axes by default.
     c, d : float in (0, 1)
         As in `arkaq_edu.art.ART2`; the thesis gives neither.
     vigilance : float in (0, 1)
-        Below it is a reset.
+        A smaller norm of r is a reset.
 
     Returns
     -------
-    ResetPlot
+    Plot
+        ``curves``, by cosine, and ``vigilance``, the line of resets.
 
     Examples
     --------
@@ -310,7 +189,7 @@ def figure_2_21(
     ax.text(0.03, 0.05, "reset below the dashed line", color=style.OURS, fontsize=9,
             transform=ax.transAxes)  # fmt: skip
     ax.set(xlim=(0, cdz[-1]), ylim=(0.7, 1.02))
-    return ResetPlot(ax, curves, line)
+    return Plot(ax, curves=curves, vigilance=line)
 
 
 # Networks at work
@@ -323,7 +202,7 @@ def plot_letters(
     *,
     columns: int = 5,
     title: str = "",
-) -> GridsPlot:
+) -> Plot:
     """Draw binary patterns side by side, each as a grid of points.
 
     Parameters
@@ -331,9 +210,9 @@ def plot_letters(
     patterns : array_like, shape (n, m)
         Zeros and ones, row by row from the top of each grid.
     names : sequence of n str, optional
-        What stands under each.
+        A caption for each grid.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; new axes by default.
     columns : int
         Width of a grid, a divisor of m.
     title : str
@@ -341,23 +220,19 @@ def plot_letters(
 
     Returns
     -------
-    GridsPlot
+    Plot
+        ``grids``, the filled points of each, and ``words``, the captions.
 
     Examples
     --------
     >>> from matplotlib.figure import Figure
+    >>> from arkaq_edu.art import LETTERS
     >>> plot_letters([LETTERS["L"], LETTERS["T"]], "LT", Figure().subplots())
     2 grids
     """
     patterns = _checks.array("patterns", patterns, (None, None)) > 0
-    below = 1.4 if len(names) else 0.3
-    ax = _grid_axes(ax, len(patterns), columns, patterns.shape[1], title, below)
-    words = []
-    for k, pattern in enumerate(patterns):
-        _fill(ax, k, pattern, np.zeros_like(pattern), columns)
-        if k < len(names):
-            words.append(_caption(ax, k, names[k], columns))
-    return GridsPlot(ax, list(patterns), words)
+    grids = [(pattern, np.zeros_like(pattern)) for pattern in patterns]
+    return _grids(ax, grids, names, columns, title, below=1.4 if len(names) else 0.3)
 
 
 def plot_search(
@@ -366,50 +241,87 @@ def plot_search(
     ax: Axes | None = None,
     *,
     columns: int = 5,
-) -> GridsPlot:
-    """Draw the search of ART1 for one pattern, step by step: what F1 shows, and what became of it.
+) -> Plot:
+    """Draw the search of ART1 for one pattern, step by step: the activity of F1, and the outcome.
 
-    Filled points are active in F1; crosses mark inputs that the expectation has put out.
+    Filled points are active in F1. Crosses mark inputs that the expectation has switched off.
 
     Parameters
     ----------
     trace : DataFrame
         What `arkaq_edu.art.ART1.trace` returns.
     names : mapping of int to str, optional
-        What to call the nodes of F2.
+        Names for the nodes of F2.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; new axes by default.
     columns : int
         Width of a grid.
 
     Returns
     -------
-    GridsPlot
+    Plot
+        ``grids``, the activity of F1 at each step, and ``words``, the captions.
 
     Examples
     --------
     >>> from matplotlib.figure import Figure
-    >>> from arkaq_edu.art import ART1
+    >>> from arkaq_edu.art import ART1, LETTERS
     >>> network = ART1(0.8).fit([LETTERS["L"], LETTERS["T"]])
     >>> plot_search(network.trace(LETTERS["I"]), ax=Figure().subplots())
     0 resets, then node 1 is in resonance
     """
-    steps = [step for _, step in trace.groupby("step")]
-    resets = sum(bool(step["reset"].iloc[0]) for step in steps)
-    end = "no node is left" if len(steps) == 1 else f"{_who(steps[-1], names)} is in resonance"
-    title = f"{resets} reset{'' if resets == 1 else 's'}, then {end}"
-    ax = _grid_axes(ax, len(steps), columns, len(steps[0]), title, below=3.2)
-    grids, words = [], []
-    for k, step in enumerate(steps):
+    grids, captions = [], []
+    for _, step in trace.groupby("step"):
         active = step["activity"].to_numpy() > 0
-        lost = (step["input"].to_numpy() > 0) & ~active
-        _fill(ax, k, active, lost, columns)
-        grids.append(active)
-        words.append(_caption(ax, k, _verdict(step, names), columns))
-    return GridsPlot(ax, grids, words)
+        grids.append((active, (step["input"].to_numpy() > 0) & ~active))
+        first = step.iloc[0]
+        who = (names or {}).get(first["node"], f"node {first['node']}")
+        end = "reset" if first["reset"] else "resonance"
+        captions.append(f"{who}\nmatch {first['match']:.2f}\n{end}")
+    captions[0] = "input alone"
+    resets = sum(caption.endswith("reset") for caption in captions)
+    end = "no node is left" if len(grids) == 1 else f"{who} is in resonance"
+    title = f"{resets} reset{'' if resets == 1 else 's'}, then {end}"
+    return _grids(ax, grids, captions, columns, title, below=3.2)
 
 
-def plot_settling(trace: pd.DataFrame, theta: float, ax: Axes | None = None) -> SettlingPlot:
+def _grids(
+    ax: Axes | None,
+    grids: Sequence[tuple[NDArray[np.bool_], NDArray[np.bool_]]],
+    captions: Sequence[str],
+    columns: int,
+    title: str,
+    below: float,
+) -> Plot:
+    """Draw grids side by side: filled points for the first array, crosses for the second."""
+    m = len(grids[0][0])
+    if m % columns:
+        raise ValueError(f"columns must divide the {m} points of a pattern, got {columns}")
+    pitch, rows = columns + 1.5, m // columns
+    width = len(grids) * pitch - 1.2
+    ax = blank(ax, title, (-0.3, width), (-below, rows + 0.3), inch=min(0.25, 9 / width))
+    points = np.array([(i % columns, rows - 1 - i // columns) for i in range(m)])
+    texts: list[Text] = []
+    for k, (active, lost) in enumerate(grids):
+        corners = points + np.array([k * pitch, 0])
+        ax.add_collection(
+            PatchCollection(
+                [Rectangle(tuple(corner), 1, 1) for corner in corners],
+                facecolors=[style.INK if on else "white" for on in active],
+                edgecolors="#bbbbbb", linewidths=0.6,
+            )
+        )  # fmt: skip
+        ax.plot(*(corners[lost] + 0.5).T, "x", color=style.OURS, markersize=6, markeredgewidth=1.6)
+        if k < len(captions):
+            middle = k * pitch + columns / 2
+            text = ax.text(middle, -0.4, captions[k], ha="center", va="top", fontsize=9)
+            text.set_color(style.INK)
+            texts.append(text)
+    filled = [active for active, _ in grids]
+    return Plot(ax, f"{len(grids)} grids", grids=filled, words=texts)
+
+
+def plot_settling(trace: pd.DataFrame, theta: float, ax: Axes | None = None) -> Plot:
     """Draw the activity `u` of each feature while the loops of ART2's F1 settle.
 
     Parameters
@@ -419,11 +331,12 @@ def plot_settling(trace: pd.DataFrame, theta: float, ax: Axes | None = None) -> 
     theta : float
         The noise threshold.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; new axes by default.
 
     Returns
     -------
-    SettlingPlot
+    Plot
+        ``lines``, one for each feature.
 
     Examples
     --------
@@ -433,73 +346,23 @@ def plot_settling(trace: pd.DataFrame, theta: float, ax: Axes | None = None) -> 
     >>> plot_settling(network.trace([1.0, 0.2, 0.0]), 0.3, Figure().subplots())
     1 of 2 active features is above theta
     """
-    table = trace.pivot(index="step", columns="feature", values="u")
-    given = trace[trace["step"] == 0].set_index("feature")["input"]
-    active = int((given > 0).sum())
-    left = int((table.iloc[-1] >= theta).sum())
+    u = trace.pivot(index="step", columns="feature", values="u").to_numpy()
+    given = trace["input"][trace["step"] == 0].to_numpy()
+    left, active = (u[-1] >= theta).sum(), (given > 0).sum()
     title = f"{left} of {active} active features {'is' if left == 1 else 'are'} above theta"
     ax = style.axes(ax, xlabel="cycle of F1", ylabel="activity u", title=title)
     # Before the first cycle there is only the input.
-    cycles = np.arange(len(table) + 1)
-    lines = []
-    for feature in table.columns:
-        (line,) = ax.plot(
-            cycles, [given[feature], *table[feature]], "-o", color=style.INK, markersize=3
-        )
-        lines.append(line)
+    lines = ax.plot(np.vstack([given, u]), "-o", color=style.INK, markersize=3)
     style.measurements(np.zeros(len(given)), given, ax, markersize=7)
     ax.axhline(theta, color=style.QUIET, linestyle=":", linewidth=1)
-    ax.annotate("theta", (cycles[-1], theta), (5, 0), textcoords="offset points", va="center",
+    ax.annotate("theta", (len(u), theta), (5, 0), textcoords="offset points", va="center",
                 color=style.QUIET, fontsize=9, annotation_clip=False)  # fmt: skip
     node = trace.groupby("step")["node"].first()
     for step in node.index[node.diff().fillna(0) != 0]:
         ax.axvline(step + 0.5, color=style.OURS, linestyle="--", linewidth=1)
-        late = step > len(table) / 2
+        late = step > len(u) / 2
         ax.annotate(f"F2 chooses node {node[step]}", (step + 0.5, 1.0), (-4 if late else 4, -6),
                     xycoords=ax.get_xaxis_transform(), textcoords="offset points", fontsize=9,
                     color=style.OURS, va="center", ha="right" if late else "left")  # fmt: skip
-    ax.set(ylim=(-0.03, 1.05), xlim=(-0.3, cycles[-1] + 0.1))
-    return SettlingPlot(ax, lines)
-
-
-def _grid_axes(ax: Axes | None, n: int, columns: int, m: int, title: str, below: float) -> Axes:
-    if m % columns:
-        raise ValueError(f"columns must divide the {m} points of a pattern, got {columns}")
-    width = n * (columns + 1.5) - 1.2
-    return blank(ax, title, (-0.3, width), (-below, m // columns + 0.3), inch=min(0.25, 9 / width))
-
-
-def _fill(
-    ax: Axes, k: int, active: NDArray[np.bool_], lost: NDArray[np.bool_], columns: int
-) -> None:
-    """Draw grid `k`: filled points where `active`, crosses where `lost`."""
-    rows = len(active) // columns
-    left = k * (columns + 1.5)
-    corners = [(left + i % columns, rows - 1 - i // columns) for i in range(len(active))]
-    squares = [Rectangle(corner, 1, 1) for corner in corners]
-    colors = [style.INK if on else "white" for on in active]
-    ax.add_collection(
-        PatchCollection(squares, facecolors=colors, edgecolors="#bbbbbb", linewidths=0.6)
-    )
-    x, y = np.reshape(
-        [corner for corner, gone in zip(corners, lost, strict=True) if gone], (-1, 2)
-    ).T
-    ax.plot(x + 0.5, y + 0.5, "x", color=style.OURS, markersize=6, markeredgewidth=1.6)
-
-
-def _caption(ax: Axes, k: int, words: str, columns: int) -> Text:
-    middle = k * (columns + 1.5) + columns / 2
-    return ax.text(middle, -0.4, words, ha="center", va="top", fontsize=9, color=style.INK)
-
-
-def _who(step: pd.DataFrame, names: Mapping[int, str] | None) -> str:
-    node = int(step["node"].iloc[0])
-    return (names or {}).get(node, f"node {node}")
-
-
-def _verdict(step: pd.DataFrame, names: Mapping[int, str] | None) -> str:
-    node, match = step["node"].iloc[0], step["match"].iloc[0]
-    if node < 0:
-        return "input alone"
-    end = "reset" if step["reset"].iloc[0] else "resonance"
-    return f"{_who(step, names)}\nmatch {match:.2f}\n{end}"
+    ax.set(ylim=(-0.03, 1.05), xlim=(-0.3, len(u) + 0.1))
+    return Plot(ax, lines=lines)

@@ -30,8 +30,14 @@ from numpy.typing import ArrayLike
 from arkaq_edu import _checks
 from arkaq_edu.arkaq import Arkaq
 from arkaq_edu.envs.ball_approach import ACTIONS
+from arkaq_edu.experiments.segmentation import (
+    DISTANCE,
+    ORIENTATION,
+    THESIS_COUNTS,
+    in_view,
+    map_of,
+)
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.figures.segmentation import DISTANCE, ORIENTATION, THESIS_COUNTS, in_view, map_of
 
 _UP = Path([(-0.2, -1), (-0.2, 0), (-0.7, 0), (0, 1), (0.7, 0), (0.2, 0), (0.2, -1), (-0.2, -1)])
 #: An arrow for each action, which points where the action leads.

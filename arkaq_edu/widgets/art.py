@@ -10,8 +10,16 @@ import ipywidgets
 import numpy as np
 from numpy.typing import NDArray
 
-from arkaq_edu.art import ART1, match_norm
-from arkaq_edu.figures.art import COSINES, LETTERS, learned_norm, reset_cosine, reset_fact
+from arkaq_edu.art import (
+    ART1,
+    LETTERS,
+    learn_letters,
+    learned_norm,
+    match_norm,
+    reset_cosine,
+    reset_fact,
+)
+from arkaq_edu.figures.art import COSINES
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.widgets.explorer import Explorer
 from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Text
@@ -151,22 +159,6 @@ def letters_explorer() -> Explorer:
         0.5, min=0, max=1, step=0.05, description="vigilance", layout=_SLIDER
     )
     return Explorer(partial(draw_letters, counts), vigilance=slider)
-
-
-def learn_letters(vigilance: float) -> ART1:
-    """Return ART1 after it was shown the letters over and over, until no template changed.
-
-    Examples
-    --------
-    >>> learn_letters(1.0).n_clusters_
-    8
-    """
-    patterns = list(LETTERS.values())
-    network = ART1(vigilance).fit(patterns)
-    while True:
-        before = network.cluster_centers_
-        if np.array_equal(before, network.partial_fit(patterns).cluster_centers_):
-            return network
 
 
 def draw_letters(counts: Mapping[float, int], vigilance: float) -> Scene:

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from arkaq_edu import _checks
-from arkaq_edu.art import ART2A, EuclideanART
-from arkaq_edu.figures import segmentation
+from arkaq_edu.art import ART2A, EuclideanART, coverage, quantization_error
+from arkaq_edu.experiments import segmentation
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.widgets.explorer import Explorer
 from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Text
@@ -160,8 +160,8 @@ def draw(
     elif at in segmentation.THESIS_COUNTS:
         counted = segmentation.count_fact(len(found), at)
     curve = _cosine_curve if method == "angular" else _distance_curve
-    covered = segmentation.coverage(network, patterns)
-    error = segmentation.quantization_error(patterns, network.predict(patterns))
+    covered = coverage(network, patterns)
+    error = quantization_error(patterns, network.predict(patterns))
     fact = f"{counted}; coverage {100 * covered:.1f} %, error {error:.3f}"
     return Scene(fact, [_map(found), curve(references.get(method, {}), at, len(found))])
 

@@ -179,8 +179,8 @@ def test_bad_input_is_refused_by_name(call, words):
 
 
 def test_figures_and_table_quote_the_same_numbers_of_the_thesis():
+    from arkaq_edu.experiments.segmentation import THESIS_COUNTS
     from arkaq_edu.figures import goal
-    from arkaq_edu.figures.segmentation import THESIS_COUNTS
 
     quoted = {f"centers, vigilance {rho:g}": n for rho, n in THESIS_COUNTS.items()}
     quoted |= {f"goal centers, vigilance {rho:g}": n for rho, n in goal.THESIS_COUNTS.items()}

@@ -1,20 +1,18 @@
-"""The map of categories: its cells, its colors, its measures, and the figures drawn of it."""
+"""The map of categories, and the figures of both methods: what is drawn is what was computed."""
 
-import copy
 import itertools
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.path import Path as Polygon
 
-from arkaq_edu.art import ART2A, EuclideanART
+from arkaq_edu.experiments import segmentation as experiment
+from arkaq_edu.experiments.segmentation import LEARNING_RATE, THESIS_COUNTS
 from arkaq_edu.figures import FIGURES as GALLERY
-from arkaq_edu.figures import distance, segmentation
+from arkaq_edu.figures import segmentation
 from arkaq_edu.figures.drawing import style
 from tests.stand_in import triangle_stream
 
@@ -44,34 +42,6 @@ def leader_count(patterns, vigilance, eta):
     return len(centers)
 
 
-@pytest.mark.parametrize("n", [1, 2, 3, 30, 400])
-def test_a_cell_holds_the_points_nearest_to_its_center(n):
-    centers = scattered(n)
-    polygons, _ = segmentation.voronoi_cells(centers)
-    points = scattered(500, seed=1)
-    gaps = np.linalg.norm(points[:, None] - centers, axis=2)
-    inside = np.array([Polygon(polygon).contains_points(points) for polygon in polygons])
-    assert inside.sum(axis=0).tolist() == [1] * len(points)
-    assert inside.argmax(axis=0).tolist() == gaps.argmin(axis=1).tolist()
-
-
-def test_cells_that_touch_are_told():
-    centers = np.array([[x, y] for y in (-0.5, 0.5) for x in (-0.6, 0.0, 0.61)])
-    centers[3:, 0] += 0.1  # bricks: no four cells meet in a point
-    _, pairs = segmentation.voronoi_cells(centers)
-    rows = {(0, 1), (1, 2), (3, 4), (4, 5)}
-    between = {(0, 3), (1, 3), (1, 4), (2, 4), (2, 5)}
-    assert set(map(tuple, pairs.tolist())) == rows | between
-
-
-@given(st.integers(1, 300), st.integers(0, 10**6))
-def test_no_neighbors_share_a_color(n, seed):
-    _, pairs = segmentation.voronoi_cells(scattered(n, seed))
-    colors = np.array(segmentation.six_colors(n, pairs))
-    assert len(colors) == n and colors.min() >= 0 and colors.max() <= 5
-    assert (colors[pairs[:, 0]] != colors[pairs[:, 1]]).all()
-
-
 @pytest.mark.parametrize("centers", [[[0.0]], [[0.0, np.nan]], [0.0, 1.0]])
 def test_refuses_what_is_no_list_of_centers(centers):
     with pytest.raises(ValueError, match="centers must"):
@@ -96,69 +66,22 @@ def test_draws_centers_in_the_robots_view():
 def test_a_figure_prints_the_thesiss_count_and_ours(vigilance):
     patterns = triangle_stream(1500)
     plot = FIGURES[vigilance](Figure().subplots(), patterns=patterns, learning_rate=0.4)
-    ours, thesis = leader_count(patterns, vigilance, 0.4), segmentation.THESIS_COUNTS[vigilance]
+    ours, thesis = leader_count(patterns, vigilance, 0.4), THESIS_COUNTS[vigilance]
     assert plot.n_centers == ours == len(plot.centers.get_xdata()) == len(plot.cells.get_paths())
     assert repr(plot) == f"{ours} categories at vigilance {vigilance}, the thesis printed {thesis}"
 
 
 def test_a_figure_makes_its_own_axes_and_shows_nothing(monkeypatch):
     patterns = triangle_stream(300)
-    monkeypatch.setattr(segmentation, "recorded_patterns", lambda: patterns)
+    monkeypatch.setattr(experiment, "recorded_patterns", lambda: patterns)
     monkeypatch.setattr(plt, "show", lambda *_: pytest.fail("plt.show was called"))
     before = plt.get_fignums()
     plot = segmentation.figure_5_10()
-    assert plot.n_centers == leader_count(patterns, 0.15, segmentation.LEARNING_RATE)
+    assert plot.n_centers == leader_count(patterns, 0.15, LEARNING_RATE)
     assert plt.get_fignums() == [*before, plot.ax.figure.number]
     plt.close(plot.ax.figure)
     segmentation.figure_5_10(Figure().subplots())
     assert plt.get_fignums() == before
-
-
-@pytest.mark.parametrize("order", segmentation.ORDERS)
-def test_an_order_loses_no_pattern_and_is_always_the_same(order):
-    patterns = triangle_stream(300)
-    ordered = segmentation.in_order(patterns, order)
-    assert sorted(ordered.tolist()) == sorted(patterns.tolist())
-    assert (ordered == segmentation.in_order(patterns, order)).all()
-    assert (ordered == patterns).all() == (order == "as recorded")
-    assert (np.diff(ordered[:, 0]) >= 0).all() == (order == "sorted by distance")
-
-
-def test_an_unknown_order_is_refused():
-    with pytest.raises(ValueError, match=r"order must be one of .*got 'backwards'"):
-        segmentation.in_order([[0, 0]], "backwards")
-
-
-@pytest.mark.parametrize("rate", [0.1, 0.6, 1.0])
-@pytest.mark.parametrize(
-    ("method", "vigilance"),
-    [(EuclideanART, 0.1), (EuclideanART, 0.4), (ART2A, 0.6), (ART2A, 0.98)],
-)
-def test_a_recognized_pattern_is_one_that_founds_nothing(method, vigilance, rate):
-    network = method(vigilance, rate).fit(triangle_stream(300))
-    asked = np.vstack([scattered(150, seed=3), [[0.0, 0.0]]])
-    founds = []
-    for pattern in asked:
-        twin = copy.deepcopy(network).partial_fit([pattern])
-        founds.append(twin.n_clusters_ > network.n_clusters_ or twin.labels_[0] == -1)
-    assert segmentation.coverage(network, asked) == pytest.approx(1 - np.mean(founds))
-
-
-@given(st.integers(1, 80), st.integers(1, 9), st.integers(0, 10**6))
-def test_the_quantization_error_is_the_spread_about_the_means(n, k, seed):
-    rng = np.random.default_rng(seed)
-    places, labels = rng.normal(0, 100, (n, 2)), rng.integers(-1, k, n)
-    squares = sum(
-        ((places[labels == label] - places[labels == label].mean(axis=0)) ** 2).sum()
-        for label in set(labels.tolist())
-    )
-    assert segmentation.quantization_error(places, labels) == pytest.approx((squares / n) ** 0.5)
-
-
-@pytest.mark.parametrize(("places", "labels"), [([[0.0]], [0, 1]), ([0.0, 1.0], [0, 1])])
-def test_the_quantization_error_wants_a_label_a_place(places, labels):
-    with pytest.raises(ValueError, match=r"(labels|places) must"):
-        segmentation.quantization_error(places, labels)
 
 
 @pytest.mark.parametrize("number", ["4.1", "4.2", "5.9"])
@@ -180,7 +103,7 @@ def tips(arrows):
 
 @pytest.mark.parametrize(("rate", "times"), [(0.3, 3), (0.1, 1), (1.0, 2)])
 def test_a_template_turns_towards_its_pattern_and_keeps_its_length(rate, times):
-    plot = distance.figure_4_1(Figure().subplots(), learning_rate=rate, times=times)
+    plot = segmentation.figure_4_1(Figure().subplots(), learning_rate=rate, times=times)
     before, after = tips(plot.before), tips(plot.after)
     w, x = before[0] @ [1, 1j], np.array(plot.patterns.get_xydata())[0] @ [1, 1j]
     for _ in range(times):
@@ -194,14 +117,14 @@ def test_a_template_turns_towards_its_pattern_and_keeps_its_length(rate, times):
 
 
 def test_a_pattern_out_of_every_angle_founds_a_template():
-    plot = distance.figure_4_1(Figure().subplots(), vigilance=0.95)
+    plot = segmentation.figure_4_1(Figure().subplots(), vigilance=0.95)
     assert len(tips(plot.before)) == 2 and len(tips(plot.after)) == 3
     assert angles(tips(plot.after)[2:]) == pytest.approx(50)
 
 
 @pytest.mark.parametrize("eta", [0.25, 0.5, 1.0])
 def test_the_near_pattern_moves_a_center_and_the_far_one_founds_one(eta):
-    plot = distance.figure_4_2(Figure().subplots(), learning_rate=eta)
+    plot = segmentation.figure_4_2(Figure().subplots(), learning_rate=eta)
     old, new = plot.before.get_xydata(), plot.after.get_xydata()
     x1, x2 = plot.patterns.get_xydata()
     assert new[0] == pytest.approx((1 - eta) * old[0] + eta * x1)

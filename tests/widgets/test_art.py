@@ -10,8 +10,8 @@ from IPython.core.formatters import DisplayFormatter
 from matplotlib.path import Path as Polygon
 from PIL import Image
 
-from arkaq_edu.art import ART1, match_norm
-from arkaq_edu.figures import art as figures
+from arkaq_edu.art import ART1, LETTERS, learned_norm, match_norm, reset_fact
+from arkaq_edu.figures.art import COSINES
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.widgets import art as widgets
 from arkaq_edu.widgets import letters_explorer, resonance_explorer
@@ -36,7 +36,7 @@ def test_the_surface_follows_its_sliders(surface, c, d, vigilance):
     for name, value in {"c": c, "d": d, "vigilance": vigilance}.items():
         surface.controls[name].value = value
     assert surface.error is None
-    assert repr(surface) == figures.reset_fact(c, d, vigilance)
+    assert repr(surface) == reset_fact(c, d, vigilance)
     above, curves = surface.drawn.panels
 
     # Each band holds the points whose norm of r lies between its levels.
@@ -50,10 +50,10 @@ def test_the_surface_follows_its_sliders(surface, c, d, vigilance):
     lines = [
         layer for layer in curves.layers if isinstance(layer, Line) and layer.color == style.INK
     ]
-    assert len(lines) == 2 * len(figures.COSINES)
-    for line, cosine in zip(lines, np.repeat(figures.COSINES, 2), strict=True):
+    assert len(lines) == 2 * len(COSINES)
+    for line, cosine in zip(lines, np.repeat(COSINES, 2), strict=True):
         assert line.y == pytest.approx(match_norm(cosine, line.x, c))
-        learned = min(figures.learned_norm(c, d), 1.5)
+        learned = min(learned_norm(c, d), 1.5)
         assert line.x[0 if line.dashed else -1] == pytest.approx(learned)
     thick = next(line for line in above.layers if isinstance(line, Line) and line.width > 2)
     for x, cosine in zip(thick.x, thick.y, strict=True):
@@ -78,16 +78,14 @@ def test_the_sliders_start_where_the_paper_is(surface):
         "c": 0.1, "d": 0.9, "vigilance": 0.95,
     }  # fmt: skip
     # As a browser adds steps up: 0.15000000000000002 is 0.15.
-    assert widgets.draw_surface(0.15000000000000002, 0.8, 0.9).fact == figures.reset_fact(
-        0.15, 0.8, 0.9
-    )
+    assert widgets.draw_surface(0.15000000000000002, 0.8, 0.9).fact == reset_fact(0.15, 0.8, 0.9)
 
 
 @pytest.mark.parametrize("vigilance", [0.0, 0.45, 0.5, 0.8, 1.0])
 def test_the_letters_are_those_of_a_stable_network(letters, vigilance):
     letters.controls["vigilance"].value = vigilance
     assert letters.error is None
-    patterns = np.array(list(figures.LETTERS.values()))
+    patterns = np.array(list(LETTERS.values()))
     network = ART1(vigilance).fit(patterns)
     for _ in range(20):
         network.partial_fit(patterns)
@@ -98,7 +96,7 @@ def test_the_letters_are_those_of_a_stable_network(letters, vigilance):
     assert np.reshape(grids.colors, (n, 25)) == pytest.approx(network.cluster_centers_)
     assert all(isinstance(name, Text) for name in names)
     members = [name.text.replace("none now", "").split() for name in names]
-    for letter, j in zip(figures.LETTERS, network.labels_, strict=True):
+    for letter, j in zip(LETTERS, network.labels_, strict=True):
         assert letter in members[j]
     assert sum(map(len, members)) == 8
     # The first square of a grid is its upper left one.

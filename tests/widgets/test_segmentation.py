@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import arkaq_edu as ae
-from arkaq_edu.figures import segmentation
+from arkaq_edu.experiments import segmentation
 from arkaq_edu.widgets import Buttons, CanvasView, Drag, Explorer, vigilance_explorer
 from arkaq_edu.widgets import segmentation as widgets
 from arkaq_edu.widgets.scene import Cells, Line, Panel, Picture, Points, Scene, Text
