@@ -94,14 +94,15 @@ def array(
         x = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):
         raise ValueError(f"{name} must be an array of numbers, got {value!r}") from None
-    fits = x.ndim == len(shape) and all(
-        want is None or want == have for want, have in zip(shape, x.shape, strict=True)
+    fits = x.shape == shape or (
+        x.ndim == len(shape)
+        and all(want is None or want == have for want, have in zip(shape, x.shape, strict=True))
     )
     if not fits:
         wanted = str(tuple("any" if s is None else s for s in shape)).replace("'any'", "any")
         raise ValueError(f"{name} must have shape {wanted}, got {x.shape}")
     bad = ~np.isfinite(x) if not allow_nan else np.isinf(x)
-    if bad.any():
+    if np.count_nonzero(bad):  # faster than bad.any() on a small array
         where = tuple(int(i) for i in np.argwhere(bad)[0])
         allowed = "finite numbers or NaN" if allow_nan else "finite numbers"
         raise ValueError(f"{name} must hold {allowed}, got {x[where]} at {where}")
@@ -118,6 +119,9 @@ def covariance(name: str, value: ArrayLike, n: int) -> NDArray[np.float64]:
     ValueError: R must be a covariance (positive semi-definite), got an eigenvalue of -4
     """
     x = array(name, value, (n, n))
+    variances = x.diagonal().tolist()
+    if min(variances, default=0.0) >= 0 and np.count_nonzero(x) == n - variances.count(0.0):
+        return x  # a diagonal shows its eigenvalues
     scale = max(float(np.abs(x).max(initial=0.0)), np.finfo(float).tiny)
     if not np.allclose(x, x.T, rtol=0, atol=1e-9 * scale):
         i, j = (int(k) for k in np.unravel_index(np.abs(x - x.T).argmax(), x.shape))

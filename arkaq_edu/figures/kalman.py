@@ -1,4 +1,4 @@
-"""Figures 2.22 and 2.23, and the pictures of the chapter on the Kalman filter.
+"""Figures 2.22 and 2.23, and the plots of the chapter on the Kalman filter.
 
 References
 ----------
@@ -14,26 +14,24 @@ Kalman filter model: x_k = A x_k-1 + B u_k-1 + w, seen as z_k = H x_k + v
 from __future__ import annotations
 
 import copy
-from typing import NamedTuple
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import FillBetweenPolyCollection
-from matplotlib.lines import Line2D
-from matplotlib.text import Annotation, Text
+from matplotlib.text import Annotation
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from arkaq_edu import _checks
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.kalman import KalmanFilter, KalmanTrace, chi_square_band
+from arkaq_edu.figures.drawing.plot import Plot
+from arkaq_edu.kalman import KalmanFilter, KalmanTrace
 
-# Marker, its size, and how far from its middle an arrow ends; all in points.
+# Marker, its size, and the distance from its center at which an arrow ends, in points.
 _SHAPES = {"vector": ("o", 40, 21), "matrix": ("s", 32, 19), "noise": ("*", 54, 15),
            "sum": ("o", 17, 9)}  # fmt: skip
 
-#: The nodes of figure 2.22: what is written in it, its kind, its place.
+#: The nodes of figure 2.22: label, kind, position.
 MODEL = {
     "x before": (r"$x_{k-1}$", "vector", (0.0, 0.0)),
     "A": ("$A$", "matrix", (1.8, 0.0)),
@@ -53,7 +51,7 @@ FLOW = [
     ("x", "H"), ("H", "is seen"), ("v", "is seen"), ("is seen", "z"),
 ]  # fmt: skip
 
-#: The two halves of figure 2.23: what each computes, in its order.
+#: The two halves of figure 2.23: the equations of each, in order.
 CYCLE = {
     "predict": [
         r"$\hat{x}_{k|k-1} = A\,\hat{x}_{k-1} + B\,u_{k-1}$",
@@ -67,59 +65,20 @@ CYCLE = {
 }
 
 
-class DiagramPlot(NamedTuple):
-    """What a diagram drew: the text in each node, and an arrow for each pair of nodes."""
+def figure_2_22(ax: Axes | None = None) -> Plot:
+    """Draw figure 2.22, the system that a Kalman filter assumes.
 
-    ax: Axes
-    nodes: dict[str, Text]
-    arrows: dict[tuple[str, str], Annotation]
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return self.ax.get_title(loc="left")
-
-
-class DensityPlot(NamedTuple):
-    """What `plot_predict_correct` drew: a curve for each density, by name."""
-
-    ax: Axes
-    curves: dict[str, Line2D]
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return self.ax.get_title(loc="left")
-
-
-class TrackPlot(NamedTuple):
-    """What `plot_track` drew."""
-
-    ax: Axes
-    truth: Line2D
-    sightings: Line2D
-    estimate: Line2D
-    band: FillBetweenPolyCollection
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return (
-            self.ax.get_title(loc="left") or f"a track of {np.size(self.truth.get_xdata())} looks"
-        )
-
-
-def figure_2_22(ax: Axes | None = None) -> DiagramPlot:
-    """Draw figure 2.22, the world that a Kalman filter assumes.
-
-    Circles are vectors, squares matrices, stars noise with its covariance at the lower right.
+    Circles are vectors, squares are matrices. Stars are noise, with the covariance beside them.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; new axes by default.
 
     Returns
     -------
-    DiagramPlot
-        ``ax``, ``nodes`` and ``arrows``, as `MODEL` and `FLOW` name them.
+    Plot
+        ``nodes`` and ``arrows``, by their names in `MODEL` and `FLOW`.
 
     References
     ----------
@@ -150,21 +109,21 @@ def figure_2_22(ax: Axes | None = None) -> DiagramPlot:
     for noise, covariance in (("w", "$Q$"), ("v", "$R$")):
         x, y = MODEL[noise][2]
         ax.text(x + 0.55, y - 0.4, covariance, ha="center", va="center", color=style.INK)
-    return DiagramPlot(ax, nodes, arrows)
+    return Plot(ax, nodes=nodes, arrows=arrows)
 
 
-def figure_2_23(ax: Axes | None = None) -> DiagramPlot:
-    """Draw figure 2.23, the cycle of the filter: predict, correct, and round again.
+def figure_2_23(ax: Axes | None = None) -> Plot:
+    """Draw figure 2.23, the cycle of the filter: predict, correct, repeat.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; new axes by default.
 
     Returns
     -------
-    DiagramPlot
-        ``ax``; ``nodes`` "predict" and "correct" with the equations; ``arrows``.
+    Plot
+        ``nodes`` "predict" and "correct" with the equations; ``arrows``.
 
     References
     ----------
@@ -210,28 +169,28 @@ def figure_2_23(ax: Axes | None = None) -> DiagramPlot:
             arrows[name, into] = _arrow(ax, (x, 1.75), (x, 1.1))
         else:
             arrows["correct", name] = _arrow(ax, (x, -1.1), (x, -1.85))
-    return DiagramPlot(ax, nodes, arrows)
+    return Plot(ax, nodes=nodes, arrows=arrows)
 
 
 def plot_predict_correct(
     kf: KalmanFilter, z: float, u: ArrayLike | None = None, ax: Axes | None = None
-) -> DensityPlot:
-    """Draw one turn of a filter of a single number as densities; the filter stays as it is.
+) -> Plot:
+    """Draw one predict and update of a scalar filter as densities; the filter does not change.
 
     Parameters
     ----------
     kf : KalmanFilter
-        One state, one measurement; it stands before the predict.
+        One state, one measurement, before the predict.
     z : float
         The sighting.
     u : array_like, shape (k,), optional
         Control input of the predict.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; new axes by default.
 
     Returns
     -------
-    DensityPlot
+    Plot
         ``curves``: "before", "predicted", "seen", "corrected".
 
     Raises
@@ -253,13 +212,13 @@ def plot_predict_correct(
     if kf.H.shape != (1, 1):
         raise ValueError(f"kf must have one state and one measurement, got {kf!r}")
     z = _checks.number("z", z)
-    turn = copy.deepcopy(kf)
-    found = {"before": (turn.x[0], turn.P[0, 0])}
-    turn.predict(u)
-    found["predicted"] = turn.x[0], turn.P[0, 0]
-    found["seen"] = z / turn.H[0, 0], turn.R[0, 0] / turn.H[0, 0] ** 2
-    turn.update([z])
-    found["corrected"] = turn.x[0], turn.P[0, 0]
+    kf = copy.deepcopy(kf)
+    found = {"before": (kf.x[0], kf.P[0, 0])}
+    kf.predict(u)
+    found["predicted"] = kf.x[0], kf.P[0, 0]
+    found["seen"] = z / kf.H[0, 0], kf.R[0, 0] / kf.H[0, 0] ** 2
+    kf.update([z])
+    found["corrected"] = kf.x[0], kf.P[0, 0]
 
     spread = {name: (mean, np.sqrt(variance)) for name, (mean, variance) in found.items()}
     words = {name: f"{name} {m:.0f} ± {s:.3g}" for name, (m, s) in spread.items()}
@@ -283,10 +242,10 @@ def plot_predict_correct(
             name, (mean, density.max()), (0, 4), textcoords="offset points", ha="center",
             color=color, bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
         )  # fmt: skip
-    style.measurements([z / turn.H[0, 0]], [0.0], ax, clip_on=False, zorder=5)
+    style.measurements([z / kf.H[0, 0]], [0.0], ax, clip_on=False, zorder=5)
     ax.fill_between(x, curves["corrected"].get_ydata(), color=style.OURS, alpha=0.25, lw=0)
     ax.set(xlim=(low, high), ylim=(0, None), yticks=[])
-    return DensityPlot(ax, curves)
+    return Plot(ax, curves=curves)
 
 
 def plot_track(
@@ -297,27 +256,28 @@ def plot_track(
     *,
     axis: int = 0,
     title: str = "",
-) -> TrackPlot:
-    """Draw what was true, what was seen and what the filter made of it, look by look.
+) -> Plot:
+    """Draw the truth, the sightings and the estimate along a track.
 
     Parameters
     ----------
     truth : array_like, shape (T,)
-        The measured number as it really was.
+        The true value of the measured number.
     Z : array_like, shape (T, m)
         The sightings; NaN where there was none.
     trace : KalmanTrace
-        What the filter left.
+        The result of the filter.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; new axes by default.
     axis : int
-        Which state, and which measurement: 0 the distance (mm), 1 the orientation (rad).
+        Which state and measurement: 0 the distance (mm), 1 the orientation (rad).
     title : str
-        What the picture states.
+        Title of the plot.
 
     Returns
     -------
-    TrackPlot
+    Plot
+        ``truth``, ``sightings``, ``estimate`` and ``band``.
 
     Raises
     ------
@@ -344,45 +304,9 @@ def plot_track(
     (line,) = ax.plot(k, truth, color=style.INK, linewidth=1.2, label="truth")
     marks = style.measurements(k, Z[:, axis], ax, markersize=4, label="sighting")
     ax.legend(frameon=False)
-    return TrackPlot(ax, line, marks, estimate, area)
-
-
-def running_nis(
-    trace: KalmanTrace,
-) -> tuple[NDArray[np.intp], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return the mean NIS of the first 1, 2, ... sightings, and a right filter's band for each.
-
-    Parameters
-    ----------
-    trace : KalmanTrace
-        Whose sightings are whole: all measurements, or none.
-
-    Returns
-    -------
-    n : array of int, shape (k,)
-        How many sightings.
-    mean : array, shape (k,)
-        Their mean NIS.
-    low, high : array, shape (k,)
-        Where it lies with probability 0.95 if the filter is right.
-
-    References
-    ----------
-    Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001,
-    section 5.4.
-
-    Examples
-    --------
-    >>> kf = KalmanFilter([[1]], [[1]], [[0]], [[1]], x0=[0], P0=[[3]])
-    >>> n, mean, low, high = running_nis(kf.filter([[4.0], [float("nan")], [3.0]]))
-    >>> n, mean.round(2), high.round(2)
-    (array([1, 2]), array([4., 2.]), array([5.02, 3.69]))
-    """
-    used = trace.nis[trace.accepted]
-    n = np.arange(1, len(used) + 1)
-    bands = [chi_square_band(trace.innovation.shape[1], int(count)) for count in n]
-    low, high = np.reshape(bands, (-1, 2)).T
-    return n, np.cumsum(used) / n, low, high
+    return Plot(
+        ax, f"a track of {T} looks", truth=line, sightings=marks, estimate=estimate, band=area
+    )
 
 
 def _canvas(ax: Axes | None, title: str) -> Axes:

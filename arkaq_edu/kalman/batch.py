@@ -9,6 +9,10 @@ from arkaq_edu._checks import array
 from arkaq_edu.kalman import compiled
 from arkaq_edu.kalman.filter import KalmanFilter
 
+# Tracks filtered side by side: enough to keep the processor's vectors full, and few enough that
+# their covariances stay in its cache.
+BLOCK = 64
+
 
 def kalman_batch(
     A: ArrayLike,
@@ -19,15 +23,15 @@ def kalman_batch(
     x0: ArrayLike | None = None,
     P0: ArrayLike | None = None,
 ) -> NDArray[np.float64]:
-    """Filter N tracks of one system; each comes out as ``KalmanFilter(...).filter`` gives it.
+    """Filter N tracks of one system; each result equals that of ``KalmanFilter(...).filter``.
 
-    The gains of eq 2.57 do not depend on what is seen, only on whether it is: so tracks with the
-    same gaps share them, and only the state is computed track by track.
+    The gains of eq 2.57 depend on which entries are seen, not on their values. So tracks with the
+    same gaps share their gains, and only the states are computed for each track.
 
     Parameters
     ----------
     A, H, Q, R, x0, P0 : array_like
-        The system and the start of every track, as in `KalmanFilter`.
+        The system and the start of every track, as for `KalmanFilter`.
     Z : array_like, shape (N, T, m)
         Sightings; NaN where an entry is missing.
 
@@ -39,7 +43,7 @@ def kalman_batch(
     Raises
     ------
     ValueError
-        As `KalmanFilter` does, and if Z has the wrong shape or holds an infinity.
+        As for `KalmanFilter`, and if Z has the wrong shape or is infinite.
 
     References
     ----------
@@ -54,13 +58,19 @@ def kalman_batch(
     """
     kf = KalmanFilter(A, H, Q, R, x0=x0, P0=P0)
     m, n = kf.H.shape
-    Z = np.array(array("Z", Z, (None, None, m), allow_nan=True), order="C")
+    Z = array("Z", Z, (None, None, m), allow_nan=True)
     groups: dict[bytes, list[int]] = {}
     for i, missing in enumerate(np.isnan(Z)):
         groups.setdefault(missing.tobytes(), []).append(i)
+    shared = [group for group in groups.values() if len(group) > 1]
+    alone = [group[0] for group in groups.values() if len(group) == 1]
     x = np.empty((*Z.shape[:2], n))
-    A, H, x0 = np.array(kf.A), np.array(kf.H), np.array(kf.x0)
-    for members in groups.values():
-        gains = kf.filter(Z[members[0]]).K
-        compiled.follow(A, H, x0, gains, Z, np.array(members), x)
+    model = [np.array(values) for values in (kf.A, kf.H, kf.Q, kf.R, kf.x0, kf.P0)]
+    for tracks in [*shared, alone]:
+        for start in range(0, len(tracks), BLOCK):
+            block = tracks[start : start + BLOCK]
+            found = np.empty((Z.shape[1], n, len(block)))
+            side_by_side = np.ascontiguousarray(np.moveaxis(Z[block], 0, 2))
+            compiled.batch(*model, side_by_side, found, len(block) if tracks is alone else 1)
+            x[block] = np.moveaxis(found, 2, 0)
     return x

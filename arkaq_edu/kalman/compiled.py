@@ -1,10 +1,9 @@
-"""The loops of the Kalman filter: the equations of thesis section 2.5.
+"""The compiled twin of `filter`, for whole tracks and batches: same equations, order and notation.
 
-Handing an array from Python to a kernel costs some 60 ns, about as much as the work of a kernel on
-four states. So all matrices of a filter live in one array, its memory M, each in a plane of its
-own: ``M[P, i, j]`` is element (i, j) of P. n and m are the numbers of states and measurements, x
-is the state and y the innovation. Every array is C-contiguous float64 and written in place, so
-that each kernel compiles once.
+`track` calls the equations of `filter` themselves; once the covariances have converged, it computes
+only the states. `batch` works on many tracks at once: every state and covariance has one more axis,
+the last, with an entry for each track, x (n, N) and P (n, n, L), and the helpers write into an
+array that is given last. Tests compare both with `filter`.
 """
 
 from __future__ import annotations
@@ -14,421 +13,332 @@ import math
 import numpy as np
 
 from arkaq_edu._compiled import kernel
+from arkaq_edu.kalman.filter import measurement_update, time_update
+from arkaq_edu.kalman.matrices import NEGLIGIBLE, inverse, mul, quadratic, symmetric, vec
 
-# The matrices of the thesis, then scratch: V (n, n), G = H P (m, n) and L (m, m), a factor of S.
-A, Q, P, H, R, K, S, V, G, L = PLANES = range(10)
-
-LOG_2PI = math.log(2 * math.pi)
 ROUNDING = float(np.finfo(np.float64).eps)
-# A variance that shrinks to this part of itself, once the rows before are known, is rounding.
-NEGLIGIBLE = 16 * ROUNDING
 
 
 @kernel
-def is_covariance(R):
-    """Tell whether R is finite, exactly symmetric and has no negative pivot."""
-    m = R.shape[0]
-    rest = R.copy()  # what is left of R as its columns are eliminated
-    for j in range(m):
-        for i in range(m):
-            if not math.isfinite(R[i, j]) or R[i, j] != R[j, i]:
-                return False
-        if rest[j, j] < 0.0:
-            return False
-        for i in range(j + 1, m):
-            if rest[j, j] == 0.0:
-                if rest[i, j] != 0.0:
-                    return False
-                continue
-            ratio = rest[i, j] / rest[j, j]
-            for k in range(j + 1, i + 1):
-                rest[i, k] -= ratio * rest[k, j]
-    return True
+def track(
+    A, B, H, Q, Rs, gates, x0, P0, Z, U,
+    x, P, x_prior, P_prior, innovation, S, K, nis, accepted,
+):  # fmt: skip
+    """Filter one track and fill in the rows of its trace; return its log-likelihood.
 
-
-# Numba takes seconds to compile an assignment to a slice; these loops it compiles at once.
-@kernel
-def fill(M, plane, values):
-    """Put a matrix into a plane."""
-    for i in range(values.shape[0]):
-        for j in range(values.shape[1]):
-            M[plane, i, j] = values[i, j]
-
-
-@kernel
-def keep(M, plane, out):
-    """Copy a matrix out of its plane."""
-    for i in range(out.shape[0]):
-        for j in range(out.shape[1]):
-            out[i, j] = M[plane, i, j]
-
-
-@kernel
-def copy(values, out):
-    """Copy a vector."""
-    for i in range(out.size):
-        out[i] = values[i]
-
-
-@kernel
-def predict_mean(M, push, x):
-    """Set x = A x + B u (eq 2.55), with push = B u."""
-    for i in range(x.size):
-        total = push[i]
-        for j in range(x.size):
-            total += M[A, i, j] * x[j]
-        M[V, 0, i] = total
-    for i in range(x.size):
-        x[i] = M[V, 0, i]
-
-
-@kernel
-def predict_covariance(M, n):
-    """Set P = A P A' + Q (eq 2.56)."""
-    for i in range(n):  # V = A P
-        for k in range(n):
-            M[V, i, k] = 0.0
-        for j in range(n):
-            a = M[A, i, j]
-            if a != 0.0:  # a motion model is mostly zeros
-                for k in range(n):
-                    M[V, i, k] += a * M[P, j, k]
-    for i in range(n):  # P = V A' + Q, one triangle and its mirror
-        for k in range(i, n):
-            total = M[Q, i, k]
-            for j in range(n):
-                total += M[V, i, j] * M[A, k, j]
-            M[P, i, k] = total
-            M[P, k, i] = total
-
-
-@kernel
-def predict(M, push, x):
-    """Time update, eq 2.55 and 2.56."""
-    predict_mean(M, push, x)
-    predict_covariance(M, x.size)
-
-
-@kernel
-def innovate(M, z, x, y):
-    """Set y = z - H x, NaN where z is missing; tell whether all of z was seen."""
-    whole = True
-    for i in range(z.size):
-        total = z[i]
-        for j in range(x.size):
-            total -= M[H, i, j] * x[j]
-        y[i] = total
-        whole = whole and not math.isnan(z[i])
-    return whole
-
-
-@kernel
-def factor(M, y):
-    """Factor S = L D L', with 1/D on the diagonal of L; return the rows used and log |2 pi S|.
-
-    A row is not used, and its 1/D is 0, when it was not seen (y is NaN) or when the rows before
-    determine it: then it says nothing new, and S may as well be singular.
+    `Rs` and `U` have a row for each of Z, or one row for all.
     """
-    used = 0
-    log_det = 0.0
-    for i in range(y.size):
-        rest = M[S, i, i]
-        for j in range(i):
-            total = M[S, i, j]
-            for k in range(j):
-                total -= M[L, i, k] * M[L, j, k]
-            M[L, i, j] = total  # still times D
-        for j in range(i):
-            total = M[L, i, j]
-            M[L, i, j] = total * M[L, j, j]
-            rest -= total * M[L, i, j]
-        if rest > NEGLIGIBLE * M[S, i, i] and not math.isnan(y[i]):
-            M[L, i, i] = 1.0 / rest
-            used += 1
-            log_det += LOG_2PI + math.log(rest)
-        else:
-            for j in range(i + 1):
-                M[L, i, j] = 0.0
-    return used, log_det
+    x_now, P_now, log_likelihood = x0, P0, 0.0
+    BU = mul(U, B.T)
+    T, t = Z.shape[0], 0
+    while t < T:
+        R, u = Rs[min(t, Rs.shape[0] - 1)], U[min(t, U.shape[0] - 1)]
+        x_now, P_now = time_update(A, B, Q, x_now, P_now, u)
+        copy(x_now, x_prior[t])
+        copy(P_now, P_prior[t])
+        x_now, P_now, K_now, y, S_now, nis[t], added, accepted[t] = measurement_update(
+            H, R, x_now, P_now, Z[t], gates
+        )
+        log_likelihood += added
+        copy(x_now, x[t])
+        copy(P_now, P[t])
+        copy(K_now, K[t])
+        copy(y, innovation[t])
+        copy(S_now, S[t])
+        t += 1
+        if t > 1 and Rs.shape[0] == 1 and converged(P_prior, accepted, innovation, t - 1):
+            S_inverse, used, log_det = inverse(S_now, ~np.isnan(y))
+            start = t
+            t = steady(A, H, K_now, S_inverse, gates[used], BU, Z, t, x, x_prior, innovation, nis)
+            for s in range(start, t):
+                copy(P_prior[start - 1], P_prior[s])
+                copy(P_now, P[s])
+                copy(S_now, S[s])
+                copy(K_now, K[s])
+                accepted[s] = True
+                log_likelihood -= 0.5 * (log_det + nis[s])
+            copy(x[t - 1], x_now)
+    return log_likelihood
 
 
 @kernel
-def squared_norm(M, y):
-    """Return y' S^-1 y, with S in factors, as the sum of what each row used adds."""
-    total = 0.0
-    for i in range(y.size):
-        M[V, 0, i] = 0.0
-        if M[L, i, i] > 0.0:
-            rest = y[i]
-            for j in range(i):
-                rest -= M[L, i, j] * M[V, 0, j]
-            M[V, 0, i] = rest
-            total += rest * rest * M[L, i, i]
-    return total
+def steady(A, H, K, S_inverse, gate, BU, Z, t, x, x_prior, innovation, nis):
+    """Filter on from row t with a constant gain; return the first row where that fails.
 
-
-@kernel
-def gain(M, y, n):
-    """Set S = H P H' + R and K = P H' S^-1 (eq 2.57); return what `factor` does.
-
-    Rows not used leave a column of zeros in K.
+    It fails where an entry is missing, so that the NIS is NaN, or where the gate refuses.
     """
-    m = y.size
-    for i in range(m):  # G = H P
-        for k in range(n):
-            M[G, i, k] = 0.0
-        for j in range(n):
-            h = M[H, i, j]
-            if h != 0.0:
-                for k in range(n):
-                    M[G, i, k] += h * M[P, j, k]
-    for i in range(m):  # S = H G' + R, one triangle and its mirror
-        for j in range(i + 1):
-            M[S, i, j] = M[R, i, j]
-        for k in range(n):
-            h = M[H, i, k]
-            if h != 0.0:
-                for j in range(i + 1):
-                    M[S, i, j] += h * M[G, j, k]
-        for j in range(i):
-            M[S, j, i] = M[S, i, j]
-    used, log_det = factor(M, y)
-    for r in range(n):  # K L D L' = G', row by row
-        for i in range(m):
-            total = M[G, i, r]
-            for j in range(i):
-                total -= M[L, i, j] * M[K, r, j]
-            M[K, r, i] = total
-        for i in range(m - 1, -1, -1):
-            total = M[K, r, i] * M[L, i, i]
-            for j in range(i + 1, m):
-                total -= M[L, j, i] * M[K, r, j]
-            M[K, r, i] = total
-    return used, log_det
-
-
-@kernel
-def correct_mean(M, y, x):
-    """Set x = x + K y (eq 2.58), leaving out what was not seen."""
-    for j in range(y.size):
-        if not math.isnan(y[j]):
-            for i in range(x.size):
-                x[i] += M[K, i, j] * y[j]
-
-
-@kernel
-def correct_covariance(M, n, m):
-    """Set P = (I - K H) P (I - K H)' + K R K', given G = H P.
-
-    Joseph's form: for this K it equals eq 2.59, and rounding leaves it positive. With
-    V = (I - K H) P = P - K G it is V - (V H' - K R) K'.
-    """
-    for i in range(n):
-        for j in range(n):
-            M[V, i, j] = M[P, i, j]
-    for k in range(m):
-        for i in range(n):
-            c = M[K, i, k]
-            for j in range(n):
-                M[V, i, j] -= c * M[G, k, j]
-    for k in range(m):  # G has served: from here on it is (V H' - K R)'
-        for i in range(n):
-            total = 0.0
-            for j in range(m):
-                total -= M[K, i, j] * M[R, j, k]
-            M[G, k, i] = total
-        for j in range(n):
-            h = M[H, k, j]
-            if h != 0.0:
-                for i in range(n):
-                    M[G, k, i] += M[V, i, j] * h
-    for i in range(n):
-        for j in range(i, n):
-            total = M[V, i, j]
-            for k in range(m):
-                total -= M[G, k, i] * M[K, j, k]
-            M[P, i, j] = total
-            M[P, j, i] = total
-
-
-@kernel
-def update(M, gates, z, x, y):
-    """Measurement update, eq 2.57 to 2.59; return (NIS, log-likelihood, accepted).
-
-    The NIS is NaN where nothing was seen, and -1 where z holds an infinity (nothing is changed).
-    """
-    n, m = x.size, z.size
-    for i in range(m):
-        if math.isinf(z[i]):
-            return -1.0, 0.0, False
-    innovate(M, z, x, y)
-    used, log_det = gain(M, y, n)
-    nis = squared_norm(M, y) if used > 0 else math.nan
-    if nis <= gates[used]:
-        correct_mean(M, y, x)
-        correct_covariance(M, n, m)
-        return nis, -0.5 * (log_det + nis), True
-    M[K] = 0.0
-    return nis, 0.0, False
-
-
-@kernel
-def settled(now, before):
-    """Tell whether a covariance moved by no more than a rounding of its standard deviations."""
-    for i in range(now.shape[0]):
-        rounding = ROUNDING * math.sqrt(abs(now[i, i]))
-        for j in range(i + 1):
-            if abs(now[i, j] - before[i, j]) > rounding * math.sqrt(abs(now[j, j])):
-                return False
-    return True
-
-
-@kernel
-def coast(M, pushes, gate, Z, t, xs, x_priors, ys, nis):
-    """Filter on from row t with a gain that stays; return the first row that has no part in that.
-
-    It has none when something is missing, or when its NIS is beyond the gate.
-    """
-    n, m = xs.shape[1], Z.shape[1]
     while t < Z.shape[0]:
-        for i in range(n):
-            total = pushes[min(t, pushes.shape[0] - 1), i]
-            for j in range(n):
-                total += M[A, i, j] * xs[t - 1, j]
-            x_priors[t, i] = total
-        whole = True
-        for i in range(m):
-            total = Z[t, i]
-            for j in range(n):
-                total -= M[H, i, j] * x_priors[t, j]
-            ys[t, i] = total
-            whole = whole and not math.isnan(total)
-        nis[t] = squared_norm(M, ys[t])
-        if not whole or nis[t] > gate:
-            return t
-        for i in range(n):
-            total = x_priors[t, i]
-            for j in range(m):
-                total += M[K, i, j] * ys[t, j]
-            xs[t, i] = total
+        plus(BU[min(t, BU.shape[0] - 1)], 1.0, A, x[t - 1], x_prior[t])  # eq 2.55
+        plus(Z[t], -1.0, H, x_prior[t], innovation[t])
+        nis[t] = quadratic(S_inverse, innovation[t])
+        if not nis[t] <= gate:
+            break
+        plus(x_prior[t], 1.0, K, innovation[t], x[t])  # eq 2.58
         t += 1
     return t
 
 
 @kernel
-def track(M, Rs, pushes, gates, x, Z, xs, Ps, x_priors, P_priors, ys, Ss, Ks, nis, accepted):
-    """Filter a whole track from x and P, keeping everything; return its log-likelihood.
+def converged(P_prior, accepted, innovation, t):
+    """Tell whether rows t - 1 and t used all entries, with a P_prior that is equal to rounding."""
+    for i in range(innovation.shape[1]):
+        if math.isnan(innovation[t, i] + innovation[t - 1, i]):
+            return False
+    now, before = P_prior[t], P_prior[t - 1]
+    for i in range(now.shape[0]):
+        rounding = ROUNDING * math.sqrt(now[i, i])
+        for j in range(i + 1):
+            if abs(now[i, j] - before[i, j]) > rounding * math.sqrt(now[j, j]):
+                return False
+    return accepted[t] and accepted[t - 1]
 
-    `Rs` has a row for each of Z, or none if R never changes; `pushes` a row for each, or one.
-    Covariances do not depend on what is seen, only on whether it is: once P_prior has settled, it,
-    S, K and P stay as they are, and the filter coasts until something is missing or refused. That
-    makes a long track several times faster.
+
+@kernel
+def plus(b, sign, A, x, out):
+    """Set out = b + sign A x."""
+    for i in range(A.shape[0]):
+        total = 0.0
+        for j in range(A.shape[1]):
+            total += A[i, j] * x[j]
+        out[i] = b[i] + sign * total
+
+
+@kernel
+def copy(values, out):
+    """Set out = values."""
+    out[...] = values
+
+
+@kernel
+def smoothed(A, Q, x, P, x_prior, P_prior):
+    """Smooth a filtered track in place, from its last row to its first."""
+    every, identity = np.ones(len(A), np.bool_), np.eye(len(A))
+    for t in range(len(x) - 2, -1, -1):
+        P_prior_inverse, _, _ = inverse(P_prior[t + 1], every)
+        C = mul(mul(P[t], A.T), P_prior_inverse)  # C = P A' P_prior^-1
+        x[t] = x[t] + vec(C, x[t + 1] - x_prior[t + 1])  # x += C (x_next - x_prior_next)
+        # P += C (P_next - P_prior_next) C', in Joseph's form, which stays positive
+        F = identity - mul(C, A)
+        P[t] = symmetric(mul(mul(F, P[t]), F.T) + mul(mul(C, Q + P[t + 1]), C.T))
+
+
+@kernel
+def vec_shared(A, x, out):
+    """Set out = A x, with one A for all tracks."""
+    for i in range(A.shape[0]):
+        for c in range(x.shape[1]):
+            out[i, c] = 0.0
+        for j in range(A.shape[1]):
+            for c in range(x.shape[1]):
+                out[i, c] += A[i, j] * x[j, c]
+
+
+@kernel
+def mul_shared(A, B, out):
+    """Set out = A B, with one A for all tracks."""
+    for i in range(A.shape[0]):
+        for k in range(B.shape[1]):
+            for c in range(B.shape[2]):
+                out[i, k, c] = 0.0
+        for j in range(A.shape[1]):
+            if A[i, j] != 0.0:  # a motion model is mostly zeros
+                for k in range(B.shape[1]):
+                    for c in range(B.shape[2]):
+                        out[i, k, c] += A[i, j] * B[j, k, c]
+
+
+@kernel
+def mul_shared_transpose(B, A, out):
+    """Set out = B A', with one A for all tracks."""
+    for i in range(B.shape[0]):
+        for k in range(A.shape[0]):
+            for c in range(out.shape[2]):
+                out[i, k, c] = 0.0
+            for j in range(A.shape[1]):
+                if A[k, j] != 0.0:
+                    for c in range(out.shape[2]):
+                        out[i, k, c] += B[i, j, c] * A[k, j]
+
+
+@kernel
+def mul_each(K, B, out):
+    """Set out = K B for each track."""
+    for i in range(K.shape[0]):
+        for j in range(B.shape[1]):
+            for c in range(out.shape[2]):
+                out[i, j, c] = 0.0
+            for k in range(K.shape[1]):
+                for c in range(out.shape[2]):
+                    out[i, j, c] += K[i, k, c] * B[k, j, c]
+
+
+@kernel
+def vec_each(K, y, out):
+    """Set out = K y for each track; tracks may share one K."""
+    step = 0 if K.shape[2] == 1 else 1
+    for i in range(K.shape[0]):
+        for c in range(y.shape[1]):
+            out[i, c] = 0.0
+        for j in range(K.shape[1]):
+            for c in range(y.shape[1]):
+                out[i, c] += K[i, j, c * step] * y[j, c]
+
+
+@kernel
+def transpose(B, out):
+    """Set out = B'."""
+    for i in range(B.shape[0]):
+        for j in range(B.shape[1]):
+            for c in range(B.shape[2]):
+                out[j, i, c] = B[i, j, c]
+
+
+@kernel
+def add(P, Q):
+    """Set P = P + Q, symmetric, with one Q for all tracks."""
+    for i in range(Q.shape[0]):
+        for j in range(i, Q.shape[0]):
+            for c in range(P.shape[2]):
+                P[i, j, c] += Q[i, j]
+                P[j, i, c] = P[i, j, c]
+
+
+@kernel
+def subtract(P, B, out):
+    """Set out = P - B."""
+    for i in range(P.shape[0]):
+        for j in range(P.shape[1]):
+            for c in range(P.shape[2]):
+                out[i, j, c] = P[i, j, c] - B[i, j, c]
+
+
+@kernel
+def mirror(P):
+    """Set the lower triangle of P to the mirror image of the upper one."""
+    for i in range(P.shape[0]):
+        for j in range(i):
+            for c in range(P.shape[2]):
+                P[i, j, c] = P[j, i, c]
+
+
+@kernel
+def inverse_each(S, seen, V, precision):
+    """Set V to the inverse of the rows of S that are used, as `matrices.inverse` does.
+
+    The precision of a row is one over its variance given the used rows before it; 0 if not used.
     """
-    n, m = x.size, Z.shape[1]
-    y = np.empty(m)
-    log_likelihood = 0.0
-    full = False
-    t = 0
-    while t < Z.shape[0]:
-        predict_mean(M, pushes[min(t, pushes.shape[0] - 1)], x)
-        predict_covariance(M, n)
-        copy(x, x_priors[t])
-        keep(M, P, P_priors[t])
-        if Rs.shape[0] > 0:
-            fill(M, R, Rs[t])
-        whole = innovate(M, Z[t], x, y)
-        used, log_det = gain(M, y, n)
-        nis[t] = squared_norm(M, y) if used > 0 else math.nan
-        accepted[t] = nis[t] <= gates[used]
-        if accepted[t]:
-            correct_mean(M, y, x)
-            correct_covariance(M, n, m)
-            log_likelihood -= 0.5 * (log_det + nis[t])
-        else:
-            M[K] = 0.0
-        copy(x, xs[t])
-        keep(M, P, Ps[t])
-        copy(y, ys[t])
-        keep(M, S, Ss[t])
-        keep(M, K, Ks[t])
-        was_full = full
-        full = whole and accepted[t]
-        t += 1
-        if full and was_full and Rs.shape[0] == 0 and settled(P_priors[t - 1], P_priors[t - 2]):
-            end = coast(M, pushes, gates[used], Z, t, xs, x_priors, ys, nis)
-            for s in range(t, end):
-                keep(P_priors, t - 1, P_priors[s])
-                keep(Ps, t - 1, Ps[s])
-                keep(Ss, t - 1, Ss[s])
-                keep(Ks, t - 1, Ks[s])
-                accepted[s] = True
-                log_likelihood -= 0.5 * (log_det + nis[s])
-            t = end
-            copy(xs[t - 1], x)
-    return log_likelihood
+    m, _, L = S.shape
+    for i in range(m):
+        for j in range(m):
+            for c in range(L):
+                V[i, j, c] = S[i, j, c]
+    for k in range(m):
+        for c in range(L):
+            usable = seen[k, c] and V[k, k, c] > NEGLIGIBLE * S[k, k, c]
+            precision[k, c] = 1.0 / V[k, k, c] if usable else 0.0
+        for i in range(m):
+            for j in range(m):
+                if i != k and j != k:
+                    for c in range(L):
+                        V[i, j, c] -= V[i, k, c] * precision[k, c] * V[k, j, c]
+        for i in range(m):
+            for c in range(L):
+                V[i, k, c] *= -precision[k, c]
+                V[k, i, c] *= precision[k, c]
+        for c in range(L):
+            V[k, k, c] = precision[k, c]
 
 
 @kernel
-def follow(A, H, x0, K, Z, members, x):
-    """Filter the tracks Z[members] with gains K that are known already."""
-    T, n, m = K.shape
-    prior, y = np.empty(n), np.empty(m)
-    for member in members:
-        for t in range(T):
-            for i in range(n):
-                total = 0.0
-                for j in range(n):
-                    total += A[i, j] * (x[member, t - 1, j] if t > 0 else x0[j])
-                prior[i] = total
-            for i in range(m):
-                total = Z[member, t, i]
-                for j in range(n):
-                    total -= H[i, j] * prior[j]
-                y[i] = 0.0 if math.isnan(total) else total
-            for i in range(n):
-                total = prior[i]
-                for j in range(m):
-                    total += K[t, i, j] * y[j]
-                x[member, t, i] = total
+def predict_state(A, B, x, u, x_prior):
+    """Eq 2.55: x_prior = A x + B u."""
+    vec_shared(A, x, x_prior)
+    for i in range(B.shape[0]):
+        Bu = 0.0
+        for j in range(B.shape[1]):
+            Bu += B[i, j] * u[j]
+        for c in range(x_prior.shape[1]):
+            x_prior[i, c] += Bu
 
 
 @kernel
-def smooth(M, xs, Ps, x_priors):
-    """Smooth a filtered track in place, from its last row back.
+def predict_covariance(A, Q, P, AP, P_prior):
+    """Eq 2.56: P_prior = A P A' + Q."""
+    mul_shared(A, P, AP)
+    mul_shared_transpose(AP, A, P_prior)
+    add(P_prior, Q)
 
-    The next state is a sighting of A x with noise Q: so the gain is that of a measurement update
-    with A in the plane of H and Q in that of R. What is unsure of the next state comes back
-    through it: P = (I - K A) P (I - K A)' + K (Q + P_next) K'.
+
+@kernel
+def innovate(H, z, x_prior, innovation, y, seen):
+    """Set the innovation z - H x_prior, y (the same with 0 for NaN) and the entries seen."""
+    vec_shared(H, x_prior, innovation)
+    for i in range(z.shape[0]):
+        for c in range(z.shape[1]):
+            innovation[i, c] = z[i, c] - innovation[i, c]
+            y[i, c] = 0.0 if math.isnan(z[i, c]) else innovation[i, c]
+        for c in range(seen.shape[1]):
+            seen[i, c] = not math.isnan(z[i, c])
+
+
+@kernel
+def gain(H, R, P_prior, seen, HP, PH, S, S_inverse, precision, K):
+    """Eq 2.57: K = P H' S^-1 with S = H P H' + R."""
+    mul_shared(H, P_prior, HP)
+    mul_shared_transpose(HP, H, S)
+    add(S, R)
+    inverse_each(S, seen, S_inverse, precision)
+    transpose(HP, PH)
+    mul_each(PH, S_inverse, K)
+
+
+@kernel
+def correct_state(x_prior, K, y, x):
+    """Eq 2.58: x = x_prior + K y."""
+    vec_each(K, y, x)
+    for i in range(x.shape[0]):
+        for c in range(x.shape[1]):
+            x[i, c] += x_prior[i, c]
+
+
+@kernel
+def correct_covariance(H, R, P_prior, HP, K, KHP, PH, KR, K_transpose, P):
+    """Eq 2.59: P = P - K H P, then Joseph's form P - (P H' - K R) K'."""
+    mul_each(K, HP, KHP)
+    subtract(P_prior, KHP, P)
+    mul_shared_transpose(P, H, PH)
+    mul_shared_transpose(K, R, KR)
+    subtract(PH, KR, PH)
+    transpose(K, K_transpose)
+    mul_each(PH, K_transpose, KHP)
+    subtract(P, KHP, P)
+    mirror(P)
+
+
+@kernel
+def batch(A, H, Q, R, x0, P0, Z, x, L):
+    """Filter the N tracks of Z (T, m, N) into x (T, n, N).
+
+    L = 1 if all tracks miss the same entries and so share their covariances, otherwise L = N.
     """
-    n = xs.shape[1]
-    y = np.zeros(n)
-    for t in range(xs.shape[0] - 2, -1, -1):
-        fill(M, P, Ps[t])
-        gain(M, y, n)
-        for i in range(n):
-            y[i] = xs[t + 1, i] - x_priors[t + 1, i]
-        correct_mean(M, y, xs[t])
-        for i in range(n):
-            for j in range(n):
-                total = 1.0 if i == j else 0.0
-                for k in range(n):
-                    total -= M[K, i, k] * M[H, k, j]
-                M[A, i, j] = total
-                M[Q, i, j] = 0.0
-        predict_covariance(M, n)
-        fill(M, Q, M[P])
-        fill(M, A, M[K])
-        for i in range(n):
-            for j in range(n):
-                M[P, i, j] = M[R, i, j] + Ps[t + 1, i, j]
-        predict_covariance(M, n)
-        keep(M, P, Ps[t])
-
-
-@kernel
-def squared_norms(M, errors, Ps, norms):
-    """Set norms_t = e_t' P_t^-1 e_t."""
-    for t in range(errors.shape[0]):
-        fill(M, S, Ps[t])
-        factor(M, errors[t])
-        norms[t] = squared_norm(M, errors[t])
+    n, m, N = A.shape[0], H.shape[0], Z.shape[2]
+    P, P_prior = np.empty((n, n, L)), np.empty((n, n, L))
+    AP, KHP = np.empty((n, n, L)), np.empty((n, n, L))
+    HP, K_transpose = np.empty((m, n, L)), np.empty((m, n, L))
+    K, PH, KR = np.empty((n, m, L)), np.empty((n, m, L)), np.empty((n, m, L))
+    S, S_inverse = np.empty((m, m, L)), np.empty((m, m, L))
+    precision, seen = np.empty((m, L)), np.empty((m, L), np.bool_)
+    x_prior, innovation, y = np.empty((n, N)), np.empty((m, N)), np.empty((m, N))
+    B, u = np.empty((n, 0)), np.empty(0)
+    start = np.empty((n, N))
+    for i in range(n):
+        start[i, :] = x0[i]
+        for j in range(n):
+            P[i, j, :] = P0[i, j]
+    for t in range(Z.shape[0]):
+        predict_state(A, B, x[t - 1] if t > 0 else start, u, x_prior)
+        predict_covariance(A, Q, P, AP, P_prior)
+        innovate(H, Z[t], x_prior, innovation, y, seen)
+        gain(H, R, P_prior, seen, HP, PH, S, S_inverse, precision, K)
+        correct_state(x_prior, K, y, x[t])
+        correct_covariance(H, R, P_prior, HP, K, KHP, PH, KR, K_transpose, P)

@@ -9,7 +9,7 @@ from arkaq_edu._checks import integer, number
 
 
 def constant_velocity(dt: float, n_axes: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return A and H of a thing that drifts at constant velocity and whose position is seen.
+    """Return A and H of an object that moves at constant velocity and whose position is measured.
 
     The state holds all positions first, then all velocities: for two axes x, y, vx, vy. The ball
     of the thesis (section 5.2) has the axes distance and orientation.
@@ -27,8 +27,8 @@ def constant_velocity(dt: float, n_axes: int) -> tuple[NDArray[np.float64], NDAr
     A : ndarray, shape (2 n_axes, 2 n_axes)
         State transition model: position += dt velocity.
     H : ndarray, shape (n_axes, 2 n_axes)
-        Observation model: the positions. It is not square, so that "R to 0 gives K to H^-1"
-        after eq 2.54 of the thesis cannot hold as printed; what does hold is H K to I.
+        Observation model: the positions. It is not square, so K cannot go to H^-1 as R goes to
+        0, as the thesis prints after eq 2.54; instead H K goes to I.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The noises Q and R, learned from a recorded track."""
+"""The noise covariances Q and R, fitted to a recorded track."""
 
 from __future__ import annotations
 
@@ -7,24 +7,26 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from arkaq_edu.kalman.filter import Array, KalmanFilter
+from arkaq_edu.kalman.filter import KalmanFilter
+from arkaq_edu.kalman.trace import Array
 
-# No sigma is sought further from its start than this factor, up or down.
+# Largest factor, up or down, between a sigma and its start. A sigma that reaches the lower end
+# cannot be distinguished from 0 on the track.
 REACH = 1e6
 
 
 def fit_noise(kf: KalmanFilter, Z: ArrayLike, U: ArrayLike | None = None) -> KalmanFilter:
-    """Return the filter with the Q and R under which a recorded track is most likely.
+    """Return a filter with the Q and R that make a recorded track most likely.
 
-    Each standard deviation in Q and R is scaled by a factor of its own; correlations stay, and
-    what is 0 stays 0: so the given filter says which noises there are, and where the search
-    starts. The thesis sets both by hand (section 5.2); see the notes of `KalmanFilter`.
+    Each standard deviation in Q and R is scaled by a factor of its own. Correlations stay, and
+    zeros stay zero. So the given filter sets which noises exist and where the search starts. The
+    thesis sets both by hand (section 5.2); see the notes of `KalmanFilter`.
 
     Parameters
     ----------
     kf : KalmanFilter
-        The model and the start of the search. Its gate is left out while searching, since a
-        sighting that is refused would not count.
+        The model and the start of the search. The search ignores its gate, since a refused
+        sighting would not count in the likelihood.
     Z : array_like, shape (T, m)
         The recorded sightings; NaN where an entry is missing.
     U : array_like, shape (T, k), optional
@@ -33,19 +35,18 @@ def fit_noise(kf: KalmanFilter, Z: ArrayLike, U: ArrayLike | None = None) -> Kal
     Returns
     -------
     KalmanFilter
-        A new filter, the same but for Q and R. Its ``filter(Z, U)`` is the most likely trace.
+        A new filter that differs from `kf` in Q and R only.
 
     Raises
     ------
     ValueError
-        If Z or U does not fit the filter, if Z holds fewer numbers than there are sigmas to find,
-        or if neither Q nor R has any noise.
+        If Z or U does not fit the filter, if Z holds fewer numbers than there are sigmas to fit,
+        or if Q and R are zero.
 
     Notes
     -----
-    The likelihood of the track is the product of the densities of its innovations, and is climbed
-    in the logarithms of the sigmas (L-BFGS-B). A sigma that ends a factor of 1e6 below its start
-    cannot be told from 0 on this track.
+    The likelihood of the track is the product of the densities of its innovations. L-BFGS-B
+    maximizes it over the logarithms of the sigmas, each within a factor of 1e6 of its start.
 
     References
     ----------
@@ -54,17 +55,17 @@ def fit_noise(kf: KalmanFilter, Z: ArrayLike, U: ArrayLike | None = None) -> Kal
 
     Examples
     --------
-    A ball that stands still, seen with sigma = 30 mm by a filter that was told 1000:
+    A ball at rest, measured with sigma = 30 mm by a filter that assumes 1000:
 
     >>> Z = np.random.default_rng(0).normal(1500.0, 30.0, (500, 1))
-    >>> told = KalmanFilter([[1]], [[1]], Q=[[0]], R=[[1000.0**2]])
-    >>> round(float(fit_noise(told, Z).R[0, 0]) ** 0.5)
+    >>> assumed = KalmanFilter([[1]], [[1]], Q=[[0]], R=[[1000.0**2]])
+    >>> round(float(fit_noise(assumed, Z).R[0, 0]) ** 0.5)
     30
     """
     from scipy.optimize import minimize
 
     def scaled(log_factors: Array, gate: float | None = None) -> KalmanFilter:
-        """Return the filter whose sigmas are the given ones times the factors."""
+        """Return the filter with each sigma multiplied by its factor."""
         factors = np.ones(len(sigmas))
         factors[sigmas > 0] = np.exp(log_factors)
         of_states, of_sightings = np.split(factors, [n])

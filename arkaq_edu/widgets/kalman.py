@@ -1,4 +1,4 @@
-"""The Kalman explorer: move what a filter believes of the noise, watch its estimate and its NIS."""
+"""The Kalman explorer: set the noise a filter assumes, watch its estimate and its NIS."""
 
 from __future__ import annotations
 
@@ -11,45 +11,44 @@ from numpy.typing import NDArray
 
 from arkaq_edu import _checks
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.figures.kalman import running_nis
 from arkaq_edu.kalman import KalmanFilter, KalmanTrace
 from arkaq_edu.widgets.explorer import Explorer, wide
 from arkaq_edu.widgets.scene import Layer, Line, Panel, Points, Scene, Text, between
 
-START, STEP = 3400.0, -100.0  # where the ball is at first, and what a footstep does to it: mm
-#: Standard deviations of the simulated world, in mm: its start, a footstep, a sighting.
+START, STEP = 3400.0, -100.0  # distance of the ball at the start, and its change by a footstep: mm
+#: True standard deviations in mm: of the start, a footstep, a sighting.
 START_NOISE, STEP_NOISE, SIGHTING_NOISE = 100.0, 25.0, 100.0
 
-_ONE_SIGMA = "#e2cbdc"  # style.OURS in a quarter of its strength on white, as in `style.band`
+_ONE_SIGMA = "#e2cbdc"  # style.OURS at a quarter of its strength on white, as in `style.band`
 _RIGHT = "#e3e3e3"
 _CYCLES, _DISTANCES = (-1.0, 60.0), (0.0, 4500.0)
 _NIS = (0.05, 500.0)
 
 
 class Walk(NamedTuple):
-    """A walk to the ball of which everything is known: mm, one row a footstep cycle.
+    """A simulated walk to the ball, in mm, with one row for each footstep cycle.
 
-    `lots` are numbers in [0, 1): a sighting is missing where its lot is below the dropout.
+    `draws` are uniform in [0, 1): a sighting is missing if its draw is below the dropout.
     """
 
     truth: NDArray[np.float64]
     Z: NDArray[np.float64]
     U: NDArray[np.float64]
-    lots: NDArray[np.float64]
+    draws: NDArray[np.float64]
 
 
 def simulated_walk(rng: np.random.Generator | int | None = 0) -> Walk:
-    """Return a walk of 60 cycles: to the ball, a rest, on to the ball, a rest.
+    """Return a walk of 60 cycles: 15 footsteps, 15 cycles at rest, and both again.
 
     Parameters
     ----------
     rng : numpy.random.Generator or int
-        Where the noise comes from; the explorer's walk is that of 0.
+        Source of the noise; the explorer uses the seed 0.
 
     Returns
     -------
     Walk
-        ``truth`` (60,), ``Z`` (60, 1), ``U`` (60, 1) with 1 for a footstep, ``lots`` (60,).
+        ``truth`` (60,), ``Z`` (60, 1), ``U`` (60, 1) with 1 for a footstep, ``draws`` (60,).
 
     References
     ----------
@@ -70,17 +69,17 @@ def simulated_walk(rng: np.random.Generator | int | None = 0) -> Walk:
 
 
 def walk_filter(r: float, q: float) -> KalmanFilter:
-    """Return a filter for the simulated walk that believes in these standard deviations.
+    """Return a filter for the simulated walk that assumes these standard deviations.
 
     Parameters
     ----------
     r, q : float
-        Of a sighting and of a footstep, in mm, 0 or more; the filter's R is r**2, its Q q**2.
+        Of a sighting and of a footstep, in mm, at least 0: R is r**2 and Q is q**2.
 
     Returns
     -------
     KalmanFilter
-        It knows the footsteps, ``B``, and how well the start is known.
+        With the footsteps as ``B`` and the true variance of the start as ``P0``.
 
     Raises
     ------
@@ -101,17 +100,17 @@ def walk_filter(r: float, q: float) -> KalmanFilter:
 def kalman_explorer() -> Explorer:
     """Return sliders for R, Q and dropout above a track, its estimate and its NIS.
 
-    The noise is the same at every position of the sliders: what changes is the filter.
+    The sliders change the filter; the simulated noise stays the same.
 
     Returns
     -------
     Explorer
         Its sliders are ``controls["r"]`` and ``controls["q"]``, the standard deviations in mm
-        that the filter believes in, and ``controls["dropout"]``, the share of sightings missing.
+        that the filter assumes, and ``controls["dropout"]``, the share of sightings missing.
 
     References
     ----------
-    Thesis, section 2.5; the R at which it starts is that of section 5.2.
+    Thesis, section 2.5; it starts at the R of section 5.2.
 
     Examples
     --------
@@ -122,7 +121,7 @@ def kalman_explorer() -> Explorer:
     >>> explorer
     mean NIS 1.10 where 0.67 to 1.39 is right; estimate 60 mm off, sightings 102 mm
     """
-    # The truth is a stop of both: a browser moves a slider that starts between two stops.
+    # The true value is a stop of both sliders: a browser moves a value between two stops.
     powers: dict[str, Any] = {"base": 10, "step": 0.05} | wide()
     r, q = (np.log10([sigma / 10, sigma * 10]) for sigma in (SIGHTING_NOISE, STEP_NOISE))
     return Explorer(
@@ -140,23 +139,23 @@ def kalman_explorer() -> Explorer:
 
 
 def draw(walk: Walk, r: float, q: float, dropout: float) -> Scene:
-    """Return the picture for what a filter believes: the track on the left, its NIS on the right.
+    """Return the scene for the assumed noise: the track on the left, the NIS on the right.
 
     Parameters
     ----------
     walk : Walk
         Truth, sightings and footsteps.
     r, q : float
-        Standard deviations in mm that the filter believes in, of a sighting and of a footstep.
+        Assumed standard deviations in mm, of a sighting and of a footstep.
     dropout : float
-        Share of the sightings that are missing, 0 to 1; a greater share misses the same and more.
+        Share of the sightings that are missing, 0 to 1. A larger share contains the smaller one.
 
     Returns
     -------
     Scene
     """
     dropout = round(dropout, 3)  # a slider's steps add up to 0.30000000000000004
-    Z = np.where(walk.lots[:, np.newaxis] < dropout, np.nan, walk.Z)
+    Z = np.where(walk.draws[:, np.newaxis] < dropout, np.nan, walk.Z)
     trace = walk_filter(r, q).filter(Z, walk.U)
     mean, low, high = trace.nis_band()
     ours, theirs = _rms(trace.x[:, 0] - walk.truth), _rms(Z[:, 0] - walk.truth)
@@ -193,7 +192,7 @@ def _track(walk: Walk, Z: NDArray[np.float64], trace: KalmanTrace, told: str) ->
 
 
 def _nis(trace: KalmanTrace) -> Panel:
-    n, mean, low, high = running_nis(trace)
+    n, mean, low, high = trace.running_nis()
     ends = (1.0, 66.0)
     layers: list[Layer] = [
         between(n, np.clip(low, *_NIS), high, (*ends, *_NIS), _RIGHT),

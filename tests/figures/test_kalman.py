@@ -1,4 +1,4 @@
-"""The pictures of the Kalman chapter: what they draw is what the filter computes."""
+"""The plots of the Kalman chapter draw what the filter computes."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -120,20 +120,3 @@ def test_a_track_of_two_lengths_is_refused(ax, truth, Z):
     trace = walker().filter([[1.0]] * 2)
     with pytest.raises(ValueError, match=r"(truth|Z) must"):
         kalman.plot_track(truth, Z, trace, ax)
-
-
-def test_the_running_nis_ends_at_the_tracks_own_mean_and_band():
-    rng = np.random.default_rng(3)
-    Z = rng.normal(1500, 60, (40, 1))
-    Z[5:15] = NAN
-    trace = walker().filter(Z)
-    n, mean, low, high = kalman.running_nis(trace)
-    assert n.tolist() == list(range(1, 31))
-    assert (mean[-1], low[-1], high[-1]) == pytest.approx(trace.nis_band())
-    assert mean[:2] == pytest.approx([trace.nis[0], trace.nis[:2].mean()])
-    assert low == pytest.approx(stats.chi2.ppf(0.025, n) / n)
-    assert high == pytest.approx(stats.chi2.ppf(0.975, n) / n)
-
-
-def test_a_blind_track_has_no_running_nis():
-    assert [len(part) for part in kalman.running_nis(walker().filter([[NAN]] * 3))] == [0] * 4

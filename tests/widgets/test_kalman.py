@@ -48,7 +48,7 @@ def test_the_explorer_shows_what_the_filter_makes_of_the_walk(explorer, r, q, dr
     for name, value in (("r", r), ("q", q), ("dropout", dropout)):
         explorer.controls[name].value = value
     assert explorer.error is None
-    missing = WALK.lots < dropout
+    missing = WALK.draws < dropout
     nis, x, sigma = by_hand(r, q, missing)
     mean, low, high, ours, theirs = map(float, FACT.fullmatch(repr(explorer)).groups())
     assert mean == pytest.approx(nis.mean(), abs=0.006)

@@ -1,0 +1,93 @@
+"""Small matrices in compiled code: products, symmetry and the inverse that the filter needs.
+
+Each function returns a new array. Sums run in a fixed order, so the same input gives the same bits
+on every machine, which a linear algebra library does not promise.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from arkaq_edu._compiled import kernel
+
+LOG_2PI = math.log(2 * math.pi)
+# If only this fraction of a variance is left once the rows before are known, it is rounding error.
+NEGLIGIBLE = 16 * float(np.finfo(np.float64).eps)
+
+
+@kernel
+def mul(A, B):
+    """Return the product A B of two matrices."""
+    C = np.zeros((A.shape[0], B.shape[1]))
+    for i in range(A.shape[0]):
+        for k in range(A.shape[1]):
+            for j in range(B.shape[1]):
+                C[i, j] += A[i, k] * B[k, j]
+    return C
+
+
+@kernel
+def vec(A, x):
+    """Return the product A x of a matrix and a vector."""
+    y = np.zeros(A.shape[0])
+    for i in range(A.shape[0]):
+        for j in range(A.shape[1]):
+            y[i] += A[i, j] * x[j]
+    return y
+
+
+@kernel
+def quadratic(A, x):
+    """Return the quadratic form x' A x."""
+    total = 0.0
+    for i in range(A.shape[0]):
+        for j in range(A.shape[1]):
+            total += x[i] * A[i, j] * x[j]
+    return total
+
+
+@kernel
+def symmetric(P):
+    """Return P with its lower triangle replaced by the mirror image of the upper one."""
+    for i in range(P.shape[0]):
+        for j in range(i):
+            P[i, j] = P[j, i]
+    return P
+
+
+@kernel
+def inverse(S, seen):
+    """Invert the rows and columns of a covariance that are used; return zeros elsewhere.
+
+    A row is used if it is `seen` and the used rows before it do not already determine it. So S may
+    be singular.
+
+    Returns
+    -------
+    S_inverse : ndarray, shape (m, m)
+    used : int
+        Number of rows used.
+    log_det : float
+        Logarithm of the determinant of 2 pi S over these rows.
+    """
+    m = S.shape[0]
+    V = S.copy()
+    used, log_det = 0, 0.0
+    for k in range(m):  # Gauss-Jordan elimination; V[k, k] is the variance that is left in row k
+        pivot, ratio = V[k, k], 0.0
+        if seen[k] and pivot > NEGLIGIBLE * S[k, k]:
+            ratio = 1.0 / pivot
+            used += 1
+            log_det += LOG_2PI + math.log(pivot)
+        for i in range(m):
+            if i != k:
+                for j in range(m):
+                    if j != k:
+                        V[i, j] -= V[i, k] * ratio * V[k, j]
+        for i in range(m):
+            V[i, k] *= -ratio
+            V[k, i] *= ratio
+        V[k, k] = ratio
+    return V, used, log_det
