@@ -14,7 +14,7 @@ import numpy as np
 
 from arkaq_edu._compiled import kernel
 from arkaq_edu.kalman.filter import measurement_update, time_update
-from arkaq_edu.kalman.matrices import NEGLIGIBLE, inverse, mul, quadratic, symmetric, vec
+from arkaq_edu.kalman.matrices import NEGLIGIBLE, inverse, mul, quadratic, symmetric, transpose, vec
 
 ROUNDING = float(np.finfo(np.float64).eps)
 
@@ -29,25 +29,25 @@ def track(
     `Rs` and `U` have a row for each of Z, or one row for all.
     """
     x_now, P_now, log_likelihood = x0, P0, 0.0
-    BU = mul(U, B.T)
+    BU = mul(U, transpose(B))
     T, t = Z.shape[0], 0
     while t < T:
         R, u = Rs[min(t, Rs.shape[0] - 1)], U[min(t, U.shape[0] - 1)]
         x_now, P_now = time_update(A, B, Q, x_now, P_now, u)
-        copy(x_now, x_prior[t])
+        copy_vec(x_now, x_prior[t])
         copy(P_now, P_prior[t])
         x_now, P_now, K_now, y, S_now, nis[t], added, accepted[t] = measurement_update(
             H, R, x_now, P_now, Z[t], gates
         )
         log_likelihood += added
-        copy(x_now, x[t])
+        copy_vec(x_now, x[t])
         copy(P_now, P[t])
         copy(K_now, K[t])
-        copy(y, innovation[t])
+        copy_vec(y, innovation[t])
         copy(S_now, S[t])
         t += 1
         if t > 1 and Rs.shape[0] == 1 and converged(P_prior, accepted, innovation, t - 1):
-            S_inverse, used, log_det = inverse(S_now, ~np.isnan(y))
+            S_inverse, used, log_det = inverse(S_now, np.ones(len(S_now), np.bool_))
             start = t
             t = steady(A, H, K_now, S_inverse, gates[used], BU, Z, t, x, x_prior, innovation, nis)
             for s in range(start, t):
@@ -57,7 +57,7 @@ def track(
                 copy(K_now, K[s])
                 accepted[s] = True
                 log_likelihood -= 0.5 * (log_det + nis[s])
-            copy(x[t - 1], x_now)
+            copy_vec(x[t - 1], x_now)
     return log_likelihood
 
 
@@ -104,9 +104,18 @@ def plus(b, sign, A, x, out):
 
 
 @kernel
-def copy(values, out):
-    """Set out = values."""
-    out[...] = values
+def copy(A, out):
+    """Set out = A; as a loop, since a slice compiles and runs more slowly."""
+    for i in range(A.shape[0]):
+        for j in range(A.shape[1]):
+            out[i, j] = A[i, j]
+
+
+@kernel
+def copy_vec(x, out):
+    """Set out = x."""
+    for i in range(x.shape[0]):
+        out[i] = x[i]
 
 
 @kernel
@@ -115,11 +124,12 @@ def smoothed(A, Q, x, P, x_prior, P_prior):
     every, identity = np.ones(len(A), np.bool_), np.eye(len(A))
     for t in range(len(x) - 2, -1, -1):
         P_prior_inverse, _, _ = inverse(P_prior[t + 1], every)
-        C = mul(mul(P[t], A.T), P_prior_inverse)  # C = P A' P_prior^-1
-        x[t] = x[t] + vec(C, x[t + 1] - x_prior[t + 1])  # x += C (x_next - x_prior_next)
+        C = mul(mul(P[t], transpose(A)), P_prior_inverse)  # C = P A' P_prior^-1
+        copy_vec(x[t] + vec(C, x[t + 1] - x_prior[t + 1]), x[t])  # x += C (x_next - x_prior_next)
         # P += C (P_next - P_prior_next) C', in Joseph's form, which stays positive
         F = identity - mul(C, A)
-        P[t] = symmetric(mul(mul(F, P[t]), F.T) + mul(mul(C, Q + P[t + 1]), C.T))
+        P_now = mul(mul(F, P[t]), transpose(F)) + mul(mul(C, Q + P[t + 1]), transpose(C))
+        copy(symmetric(P_now), P[t])
 
 
 @kernel
@@ -185,7 +195,7 @@ def vec_each(K, y, out):
 
 
 @kernel
-def transpose(B, out):
+def transpose_each(B, out):
     """Set out = B'."""
     for i in range(B.shape[0]):
         for j in range(B.shape[1]):
@@ -288,7 +298,7 @@ def gain(H, R, P_prior, seen, HP, PH, S, S_inverse, precision, K):
     mul_shared_transpose(HP, H, S)
     add(S, R)
     inverse_each(S, seen, S_inverse, precision)
-    transpose(HP, PH)
+    transpose_each(HP, PH)
     mul_each(PH, S_inverse, K)
 
 
@@ -309,7 +319,7 @@ def correct_covariance(H, R, P_prior, HP, K, KHP, PH, KR, K_transpose, P):
     mul_shared_transpose(P, H, PH)
     mul_shared_transpose(K, R, KR)
     subtract(PH, KR, PH)
-    transpose(K, K_transpose)
+    transpose_each(K, K_transpose)
     mul_each(PH, K_transpose, KHP)
     subtract(P, KHP, P)
     mirror(P)

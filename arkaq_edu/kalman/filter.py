@@ -10,7 +10,15 @@ from numpy.typing import ArrayLike
 from arkaq_edu._checks import array, covariance, number
 from arkaq_edu._compiled import kernel
 from arkaq_edu.kalman.consistency import chi_square_quantile
-from arkaq_edu.kalman.matrices import inverse, mul, quadratic, symmetric, vec
+from arkaq_edu.kalman.matrices import (
+    inverse,
+    mul,
+    quadratic,
+    symmetric,
+    transpose,
+    vec,
+    without_missing,
+)
 from arkaq_edu.kalman.trace import Array, KalmanTrace
 
 
@@ -18,7 +26,7 @@ from arkaq_edu.kalman.trace import Array, KalmanTrace
 def time_update(A, B, Q, x, P, u):
     """Predict: return the state and its covariance one step ahead."""
     x = vec(A, x) + vec(B, u)  # eq 2.55: x = A x + B u
-    P = symmetric(mul(mul(A, P), A.T) + Q)  # eq 2.56: P = A P A' + Q
+    P = symmetric(mul(mul(A, P), transpose(A)) + Q)  # eq 2.56: P = A P A' + Q
     return x, P
 
 
@@ -29,23 +37,22 @@ def measurement_update(H, R, x, P, z, gates):
     `gates` holds the largest NIS accepted, by the number of entries used. Returns x, P, K,
     innovation, S, NIS, log-likelihood, accepted.
     """
-    seen = ~np.isnan(z)
     innovation = z - vec(H, x)
-    y = np.where(seen, innovation, 0.0)
+    y, seen = without_missing(innovation)
     HP = mul(H, P)
-    S = symmetric(mul(HP, H.T) + R)
+    S = symmetric(mul(HP, transpose(H)) + R)
     S_inverse, used, log_det = inverse(S, seen)
     nis = quadratic(S_inverse, y) if used > 0 else np.nan
     accepted = nis <= gates[used]
     log_likelihood = -0.5 * (log_det + nis) if accepted else 0.0
 
-    K = mul(HP.T, S_inverse)  # eq 2.54, 2.57: K = P H' (H P H' + R)^-1
+    K = mul(transpose(HP), S_inverse)  # eq 2.54, 2.57: K = P H' (H P H' + R)^-1
     if not accepted:
         K = np.zeros_like(K)
     x = x + vec(K, y)  # eq 2.53, 2.58: x = x + K (z - H x)
     P = P - mul(K, HP)  # eq 2.59: P = (I - K H) P
     # For this K, P H' = K R. Removing what rounding leaves of the difference gives Joseph's form.
-    P = symmetric(P - mul(mul(P, H.T) - mul(K, R), K.T))
+    P = symmetric(P - mul(mul(P, transpose(H)) - mul(K, R), transpose(K)))
     return x, P, K, innovation, S, nis, log_likelihood, accepted
 
 

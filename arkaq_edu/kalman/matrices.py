@@ -39,6 +39,16 @@ def vec(A, x):
 
 
 @kernel
+def transpose(A):
+    """Return the transpose A' as an array of its own, which `mul` reads faster than a view."""
+    B = np.empty((A.shape[1], A.shape[0]))
+    for i in range(A.shape[0]):
+        for j in range(A.shape[1]):
+            B[j, i] = A[i, j]
+    return B
+
+
+@kernel
 def quadratic(A, x):
     """Return the quadratic form x' A x."""
     total = 0.0
@@ -55,6 +65,16 @@ def symmetric(P):
         for j in range(i):
             P[i, j] = P[j, i]
     return P
+
+
+@kernel
+def without_missing(z):
+    """Return z with 0 in place of NaN, and which entries are not NaN."""
+    y, seen = np.zeros(len(z)), np.zeros(len(z), np.bool_)
+    for i in range(len(z)):
+        if not math.isnan(z[i]):
+            y[i], seen[i] = z[i], True
+    return y, seen
 
 
 @kernel

@@ -14,41 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from arkaq_edu import KalmanFilter, constant_velocity, kalman_batch
-
-
-def random_covariance(rng, size, rank, low_exponent):
-    """Return a covariance of a given rank with eigenvalues from 10**low_exponent to 10."""
-    basis, _ = np.linalg.qr(rng.normal(size=(size, size)))
-    eigenvalues = 10.0 ** rng.uniform(low_exponent, 1, size)
-    eigenvalues[rank:] = 0
-    P = (basis * eigenvalues) @ basis.T
-    return (P + P.T) / 2
-
-
-@st.composite
-def systems(draw, max_states=8, max_measurements=4):
-    """Draw a random system, its start and a generator for its sightings.
-
-    Q may be singular, or R nearly so: with both at once S itself is nearly singular, and no two
-    ways of computing agree to ten digits.
-    """
-    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
-    n = draw(st.integers(1, max_states))
-    m = draw(st.integers(1, min(n, max_measurements)))
-    rank = draw(st.integers(0, n))
-    lowest = draw(st.sampled_from([0, -3, -12] if rank == n else [0, -3]))
-    A = rng.normal(size=(n, n))
-    A *= draw(st.sampled_from([0.5, 0.9, 1.0])) / np.abs(np.linalg.eigvals(A)).max()
-    system = {
-        "A": A,
-        "H": rng.normal(size=(m, n)),
-        "Q": random_covariance(rng, n, rank, -2),
-        "R": random_covariance(rng, m, m, lowest),
-        "B": rng.normal(size=(n, draw(st.integers(1, 3)))),
-        "x0": rng.normal(size=n),
-        "P0": random_covariance(rng, n, n, -1),
-    }
-    return system, rng
+from tests.kalman.systems import ball, systems, with_gaps
 
 
 def peer_of(system):
@@ -93,41 +59,6 @@ def test_agrees_with_filterpy(drawn):
         assert kf.log_likelihood == pytest.approx(peer.log_likelihood, rel=1e-8)
         log_likelihood += peer.log_likelihood
     assert trace.log_likelihood == pytest.approx(log_likelihood, rel=1e-8)
-
-
-def with_gaps(rng, Z, share):
-    """Return Z with a share of its entries missing."""
-    return np.where(rng.random(Z.shape) < share, np.nan, Z)
-
-
-@settings(max_examples=40, deadline=None)
-@given(systems(max_states=4), st.sampled_from([0.0, 0.01, 0.4]), st.sampled_from([None, 0.9]))
-def test_a_track_is_its_steps(drawn, share, gate):
-    """Also where P_prior has settled, and where gaps and refused sightings unsettle it."""
-    system, rng = drawn
-    kf = KalmanFilter(**system, gate=gate)
-    Z = with_gaps(rng, rng.normal(size=(200, system["H"].shape[0])), share)
-    U = rng.normal(size=(200, system["B"].shape[1]))
-    trace = kf.filter(Z, U)
-    x_prior, stepped = [], {name: [] for name in ("x", "P", "S", "K", "innovation", "nis")}
-    for z, u in zip(Z, U, strict=True):
-        x_prior.append(kf.predict(u))
-        kf.update(z)
-        for name, values in stepped.items():
-            values.append(getattr(kf, name))
-    np.testing.assert_allclose(x_prior, trace.x_prior, rtol=0, atol=1e-10)
-    for name, values in stepped.items():
-        theirs = getattr(trace, name)
-        axes = tuple(range(1, theirs.ndim))
-        scale = np.abs(theirs).max(axis=axes, keepdims=True) if name in "PS" else 1 + abs(theirs)
-        np.testing.assert_allclose(values / scale, theirs / scale, rtol=0, atol=1e-10)
-
-
-def ball(**changes):
-    A, H = constant_velocity(0.64, 2)
-    system = {"A": A, "H": H, "Q": np.diag([1.0, 1e-4, 25.0, 1e-3]), "R": np.diag([400.0, 1e-3])}
-    system["P0"] = 1e6 * np.eye(4)
-    return KalmanFilter(**(system | changes))
 
 
 def test_scalar_gain_settles_where_the_riccati_equation_says():
