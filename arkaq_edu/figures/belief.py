@@ -1,4 +1,4 @@
-"""Figures 2.5 to 2.8 and 2.13, and the pictures of the chapter on belief states.
+"""Figures 2.5 to 2.8 and 2.13, and the other pictures of the chapter on belief states.
 
 References
 ----------
@@ -14,139 +14,68 @@ two steps right, no goal seen: [.333 .333 .000 .333], [.100 .450 .000 .450], [.1
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import FillBetweenPolyCollection, LineCollection
-from matplotlib.container import BarContainer
-from matplotlib.lines import Line2D
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from arkaq_edu import _checks
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.figures.drawing.diagram import Diagram, Place, blank, link, moment, wire, words
-from arkaq_edu.figures.pomdp import COLORS, short
-from arkaq_edu.pomdp import Calibration, belief_update, problem, successors
+from arkaq_edu.figures.drawing.diagram import Place, blank, link, moment, wire, words
+from arkaq_edu.figures.drawing.plot import Plot
+from arkaq_edu.figures.drawing.style import probability
+from arkaq_edu.pomdp import Calibration, problem, successors, trajectory
 
 #: What the thesis prints for the floors after a move down.
 PRINTED_FLOORS = (0.0, 0.33, 0.33, 0.33)
-
 
 #: Where the variables of figure 2.5 stand.
 PLACES: dict[str, Place] = {
     "S_t": (0.0, 0.0), "O_t": (0.0, 1.6), "B_t": (0.0, 3.2), "A_t": (2.4, 3.2), "R_t": (2.4, 1.1),
     "S_t+1": (4.8, 0.0), "O_t+1": (4.8, 1.6), "B_t+1": (4.8, 3.2), "A_t+1": (7.2, 3.2),
 }  # fmt: skip
-#: Its wires, from a cause to its effect; the one from B_t to B_t+1 goes over their heads.
+#: Its wires, from a cause to its effect. The one from B_t to B_t+1 is drawn above the others.
 CAUSES = [
     ("S_t", "O_t"), ("O_t", "B_t"), ("B_t", "A_t"), ("S_t", "R_t"), ("A_t", "R_t"),
     ("S_t", "S_t+1"), ("A_t", "S_t+1"), ("S_t+1", "O_t+1"), ("A_t", "O_t+1"),
     ("O_t+1", "B_t+1"), ("A_t", "B_t+1"), ("B_t+1", "A_t+1"),
 ]  # fmt: skip
-_ROW = 1.2  # from one belief to the next
-_LARGEST = 30.0  # of the dots of figure 2.13, in points, for a chance of 1
-
-
-class BeliefsPlot(NamedTuple):
-    """What `plot_beliefs` drew: a row of bars for each belief, first at the top."""
-
-    ax: Axes
-    bars: list[BarContainer]
-    printed: Line2D | None
-
-    def beliefs(self) -> NDArray[np.float64]:
-        """Return the heights of the bars: a row for each belief."""
-        return np.array([[bar.get_height() for bar in row] for row in self.bars])
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        rows = ", ".join(map(belief_words, self.beliefs()))
-        title = self.ax.get_title(loc="left")
-        return f"{title}: {rows}" if title else rows
-
-
-class LinePlot(NamedTuple):
-    """What `figure_2_8` drew: the line of all beliefs, and one of them."""
-
-    ax: Axes
-    line: Line2D
-    belief: Line2D
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return self.ax.get_title(loc="left")
-
-
-class SuccessorsPlot(NamedTuple):
-    """What `figure_2_13` drew: a belief, and by (action, observation) the one that follows."""
-
-    ax: Axes
-    start: Line2D
-    successors: dict[tuple[str, str], Line2D]
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return self.ax.get_title(loc="left")
-
-
-class RunPlot(NamedTuple):
-    """What `plot_run` drew: how much of the belief lies on the hidden state, and what hid it."""
-
-    ax: Axes
-    on_truth: Line2D
-    changes: LineCollection
-    misled: Line2D
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return self.ax.get_title(loc="left")
-
-
-class CalibrationPlot(NamedTuple):
-    """What `plot_calibration` drew: by name a line and its band, one deviation to each side."""
-
-    ax: Axes
-    lines: dict[str, Line2D]
-    bands: dict[str, FillBetweenPolyCollection]
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return self.ax.get_title(loc="left")
+_ROW = 1.2  # the distance from one belief to the next
+_LARGEST = 30.0  # the dot of figure 2.13 for a probability of 1, in points
 
 
 def belief_words(b: ArrayLike) -> str:
-    """Return a belief as it is printed, to three digits.
+    """Return a belief as the thesis prints it, to three digits.
 
     Examples
     --------
     >>> belief_words([0.1, 0.45, 0.0, 0.45]), belief_words([0.0, 1.0])
     ('[.100 .450 .000 .450]', '[.000 1.000]')
     """
-    return "[" + " ".join(short(p, 3) for p in np.asarray(b)) + "]"
+    return "[" + " ".join(probability(p, 3) for p in np.asarray(b)) + "]"
 
 
-def figure_2_5(ax: Axes | None = None) -> Diagram:
+def figure_2_5(ax: Axes | None = None) -> Plot:
     """Draw figure 2.5, a POMDP from one moment to the next.
 
-    Circles are states, observations and beliefs, squares actions, diamonds rewards; an arrow leads
-    from what decides to what is decided. T, O, R and SE stand where the tuple and the state
-    estimator work.
+    Circles are states, observations and beliefs, squares actions, diamonds rewards. An arrow leads
+    from a cause to its effect. T, O, R and SE (the state estimator) stand at the arrows that they
+    describe.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; by default on new axes.
 
     Returns
     -------
-    Diagram
+    Plot
         ``ax``, ``parts`` and ``wires``, by names like "S_t" and "S_t+1".
 
     References
     ----------
-    Thesis, figure 2.5; by section 2.3 the reward R_t is for A_t in S_t.
+    Thesis, figure 2.5. By section 2.3 the reward R_t is that of A_t in S_t.
 
     Examples
     --------
@@ -170,7 +99,7 @@ def figure_2_5(ax: Axes | None = None) -> Diagram:
         ("policy", (1.2, y)),
     ):  # fmt: skip
         words(ax, place, text, color=style.QUIET)
-    return Diagram(ax, parts, wires)
+    return Plot(ax, parts=parts, wires=wires)
 
 
 def plot_beliefs(
@@ -181,8 +110,8 @@ def plot_beliefs(
     *,
     printed: Sequence[ArrayLike | None] | None = None,
     title: str = "",
-) -> BeliefsPlot:
-    """Draw beliefs one below the other, as bars over the states.
+) -> Plot:
+    """Draw beliefs as bars over the states, one below the other.
 
     Parameters
     ----------
@@ -191,23 +120,24 @@ def plot_beliefs(
     states : sequence of str
         Names of the states.
     names : sequence of str
-        What stands beside each belief: how it came about.
+        The text beside each belief: how it came about.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; by default on new axes.
     printed : sequence of (array_like or None), optional
-        Numbers that somebody printed, shape (S,), for each belief or None; they become hollow
-        marks.
+        Printed numbers to compare with each belief, shape (S,), or None; they become hollow marks.
     title : str
         What the picture states, without the numbers.
 
     Returns
     -------
-    BeliefsPlot
+    Plot
+        ``beliefs``, shape (n, S); ``bars``, a row for each belief; and the marks ``printed``, or
+        None.
 
     Raises
     ------
     ValueError
-        If a belief is no distribution, or the names are not as many as needed.
+        If a belief is not a distribution, or the number of names is wrong.
 
     Examples
     --------
@@ -230,7 +160,7 @@ def plot_beliefs(
         ax.text(-0.6, foot + 0.3, name, ha="right", va="center", color=style.INK)
         shown = None if printed is None else printed[row]
         for place, p in zip(x, belief, strict=True):
-            ax.text(place, foot + p + 0.04, short(p), ha="center", va="bottom", fontsize=9)
+            ax.text(place, foot + p + 0.04, probability(p), ha="center", va="bottom", fontsize=9)
         if shown is not None:
             marks.append(np.column_stack([x + 0.4, foot + np.asarray(shown)]))
     ax.spines[["left", "bottom"]].set_visible(False)
@@ -242,22 +172,25 @@ def plot_beliefs(
         at, height = np.concatenate(marks).T
         hollow = style.measurements(at, height, ax, clip_on=False, label="the thesis prints")
         ax.legend(frameon=False, loc="upper right")
-    return BeliefsPlot(ax, bars, hollow)
+    rows = ", ".join(map(belief_words, b))
+    fact = f"{title}: {rows}" if title else rows
+    return Plot(ax, fact, beliefs=b, bars=bars, printed=hollow)
 
 
-def figure_2_6(ax: Axes | None = None) -> BeliefsPlot:
+def figure_2_6(ax: Axes | None = None) -> Plot:
     """Draw figure 2.6: which of four floors, before and after a move down.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; by default on new axes.
 
     Returns
     -------
-    BeliefsPlot
-        With the thesis's numbers as hollow marks: they are the floors that are still possible, all
-        alike, where Bayes' rule counts the robots that were on the first floor already.
+    Plot
+        As of `plot_beliefs`. The hollow marks are the thesis's numbers. They treat all floors that
+        are still possible alike, while Bayes' rule also counts the robots that were on the lowest
+        floor already.
 
     References
     ----------
@@ -267,68 +200,66 @@ def figure_2_6(ax: Axes | None = None) -> BeliefsPlot:
     --------
     >>> from matplotlib.figure import Figure
     >>> figure_2_6(Figure().subplots())
-    a step down, and no floor is told from another: [.250 .250 .250 .250], [.000 .250 .250 .500]
+    a step down, and all floors look alike: [.250 .250 .250 .250], [.000 .250 .250 .500]
     """
     floors = problem("floors")
-    after = belief_update(floors, floors.start, floors.actions.index("down"), 0)
+    start, _, after = trajectory(floors, ["down", "dark"]).beliefs
     return plot_beliefs(
-        [floors.start, after], floors.states, ["at first", "after down"], ax,
-        printed=[None, PRINTED_FLOORS], title="a step down, and no floor is told from another",
+        [start, after], floors.states, ["at first", "after down"], ax,
+        printed=[None, PRINTED_FLOORS], title="a step down, and all floors look alike",
     )  # fmt: skip
 
 
-def figure_2_7(ax: Axes | None = None) -> BeliefsPlot:
+def figure_2_7(ax: Axes | None = None) -> Plot:
     """Draw figure 2.7: which cell of a corridor, after two steps right without a goal.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; by default on new axes.
 
     Returns
     -------
-    BeliefsPlot
+    Plot
 
     References
     ----------
-    Thesis, section 2.3.1 and figure 2.7, where the first step, too, needs the observation that
-    this is not the goal.
+    Thesis, section 2.3.1 and figure 2.7. The first step, too, needs the observation that the cell
+    is not the goal.
 
     Examples
     --------
     >>> from matplotlib.figure import Figure
-    >>> figure_2_7(Figure().subplots()).beliefs().round(3)
+    >>> figure_2_7(Figure().subplots()).beliefs.round(3)
     array([[0.333, 0.333, 0.   , 0.333],
            [0.1  , 0.45 , 0.   , 0.45 ],
            [0.1  , 0.164, 0.   , 0.736]])
     """
     corridor = problem("corridor")
-    right, nothing = corridor.actions.index("right"), corridor.observations.index("nothing")
-    beliefs = [corridor.start]
-    for _ in range(2):
-        beliefs.append(belief_update(corridor, beliefs[-1], right, nothing))
+    beliefs = trajectory(corridor, ["right", "nothing"] * 2).beliefs[::2]
     names = ["at first", "right: no goal", "right: no goal"]
     return plot_beliefs(beliefs, corridor.states, names, ax, title="two steps right, no goal seen")
 
 
-def figure_2_8(ax: Axes | None = None, *, p: float = 0.25) -> LinePlot:
+def figure_2_8(ax: Axes | None = None, *, p: float = 0.25) -> Plot:
     """Draw figure 2.8: all beliefs over two states are a line, p(s1) = 0 at its left end.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; by default on new axes.
     p : float in [0, 1]
-        The belief that is marked: the probability of s1.
+        The marked belief: the probability of s1.
 
     Returns
     -------
-    LinePlot
+    Plot
+        The ``line`` and the mark ``belief``.
 
     Raises
     ------
     ValueError
-        If `p` is no probability.
+        If `p` is not a probability.
 
     References
     ----------
@@ -341,42 +272,43 @@ def figure_2_8(ax: Axes | None = None, *, p: float = 0.25) -> LinePlot:
     b = [.25 .75]: a point at .25 of the way from surely s2 to surely s1
     """
     p = _checks.number("p", p, 0, 1)
-    title = f"b = [{short(p)} {short(1 - p)}]: a point at {short(p)} of the way "
+    title = f"b = [{probability(p)} {probability(1 - p)}]: a point at {probability(p)} of the way "
     ax = _belief_line(ax, title + "from surely s2 to surely s1", (-0.5, 0.6), (6.4, 1.9))
     (line,) = ax.plot([0, 1], [0, 0], color=style.INK, linewidth=2)
     (mark,) = ax.plot(p, 0, "o", color=style.OURS, markersize=11)
     for x, text in ((0, "surely $s_2$"), (1, "surely $s_1$")):
         ax.plot(x, 0, "|", color=style.INK, markersize=14, markeredgewidth=2)
         ax.annotate(text, (x, 0), (0, -22), textcoords="offset points", ha="center")
-    ax.annotate(f"{short(p)}", (p, 0), (0, 10), textcoords="offset points", ha="center",
+    ax.annotate(f"{probability(p)}", (p, 0), (0, 10), textcoords="offset points", ha="center",
                 color=style.OURS)  # fmt: skip
-    return LinePlot(ax, line, mark)
+    return Plot(ax, line=line, belief=mark)
 
 
-def figure_2_13(ax: Axes | None = None, *, p: float = 0.4) -> SuccessorsPlot:
+def figure_2_13(ax: Axes | None = None, *, p: float = 0.4) -> Plot:
     """Draw figure 2.13: where two actions and three observations can lead one belief.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; by default on new axes.
     p : float in [0, 1]
         The belief at the start: the probability of s1.
 
     Returns
     -------
-    SuccessorsPlot
-        The area of each dot is the chance of its observation.
+    Plot
+        ``start``, and by (action, observation) the ``successors``. The area of each dot is the
+        probability of its observation.
 
     Raises
     ------
     ValueError
-        If `p` is no probability.
+        If `p` is not a probability.
 
     References
     ----------
-    Thesis, sections 2.3.3 (equation 2.16) and 2.3.4 (figure 2.13). The thesis gives the problem
-    neither T nor O; both are the course's own.
+    Thesis, sections 2.3.3 (equation 2.16) and 2.3.4 (figure 2.13). The thesis gives neither T nor
+    O for this problem; both are the course's own.
 
     Examples
     --------
@@ -392,7 +324,7 @@ def figure_2_13(ax: Axes | None = None, *, p: float = 0.4) -> SuccessorsPlot:
     )  # fmt: skip
     drawn = {}
     for a, row in enumerate((1, -1)):
-        color = COLORS[pomdp.actions[a]]
+        color = style.POMDP_ACTIONS[pomdp.actions[a]]
         ax.plot([0, 1], [row, row], color=style.QUIET, linewidth=1)
         ax.text(-0.04, row, pomdp.actions[a], ha="right", va="center", color=color)
         chances, beliefs = successors(pomdp, [p, 1 - p], a)
@@ -401,13 +333,13 @@ def figure_2_13(ax: Axes | None = None, *, p: float = 0.4) -> SuccessorsPlot:
             (dot,) = ax.plot(x, row, "o", color=color, markersize=_LARGEST * chance**0.5)
             drawn[pomdp.actions[a], name] = dot
             ax.annotate(
-                f"{name}\n{short(chance)}", (x, row), (0, 14 * row), textcoords="offset points",
-                ha="center", va="bottom" if row > 0 else "top", fontsize=9,
+                f"{name}\n{probability(chance)}", (x, row), (0, 14 * row), fontsize=9,
+                textcoords="offset points", ha="center", va="bottom" if row > 0 else "top",
             )  # fmt: skip
     ax.plot([0, 1], [0, 0], color=style.QUIET, linewidth=1)
     ax.text(-0.04, 0, "now", ha="right", va="center", color=style.INK)
     (start,) = ax.plot(p, 0, "o", color=style.QUIET, markersize=_LARGEST)
-    return SuccessorsPlot(ax, start, drawn)
+    return Plot(ax, start=start, successors=drawn)
 
 
 def plot_run(
@@ -417,7 +349,7 @@ def plot_run(
     ax: Axes | None = None,
     *,
     title: str = "",
-) -> RunPlot:
+) -> Plot:
     """Draw, step by step, how much of the belief lies on the hidden state.
 
     Parameters
@@ -427,20 +359,21 @@ def plot_run(
     truth : array_like of int, shape (n,)
         The hidden state after each step.
     misled : array_like of bool, shape (n,)
-        Whether what was observed spoke against the truth; hollow marks at the top.
+        Whether the observation was misleading. These steps get hollow marks at the top.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; by default on new axes.
     title : str
         What the picture states.
 
     Returns
     -------
-    RunPlot
+    Plot
+        The line ``on_truth``, the ``changes`` of the state, and the marks ``misled``.
 
     Raises
     ------
     ValueError
-        If a belief is no distribution, or the lengths differ.
+        If a belief is not a distribution, or the lengths differ.
 
     Examples
     --------
@@ -464,26 +397,27 @@ def plot_run(
     marks = style.measurements(k[wrong], np.full(wrong.sum(), 1.07), ax, label="a look misleads")
     ax.set(xlim=(0, n + 1), ylim=(0, 1.13), yticks=np.linspace(0, 1, 6).round(1))
     ax.legend(loc="best", framealpha=0.8, edgecolor="none")
-    return RunPlot(ax, on_truth, changes, marks)
+    return Plot(ax, on_truth=on_truth, changes=changes, misled=marks)
 
 
 def plot_calibration(
     curves: Mapping[str, Calibration], ax: Axes | None = None, *, title: str = ""
-) -> CalibrationPlot:
-    """Draw how often what a belief claimed was so, by what it claimed.
+) -> Plot:
+    """Draw how often the claims of a belief are true, by the claimed probability.
 
     Parameters
     ----------
     curves : mapping of str to Calibration
-        Up to two by name; their bands are one standard deviation over the seeds.
+        Up to two, by name. Their bands are one standard deviation over the seeds.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; by default on new axes.
     title : str
         What the picture states.
 
     Returns
     -------
-    CalibrationPlot
+    Plot
+        ``lines`` and ``bands``, by name.
 
     Raises
     ------
@@ -503,24 +437,22 @@ def plot_calibration(
     ax = style.axes(ax, xlabel="what the belief claims", ylabel="how often it is so", title=title)
     ax.plot([0, 1], [0, 1], "--", color=style.QUIET, linewidth=1)
     lines, bands, least = {}, {}, 1.0
-    for (name, (claimed, held)), color in zip(
-        curves.items(), (style.OURS, style.INK), strict=False
-    ):
-        mean, std = np.nanmean(held, axis=0), np.nanstd(held, axis=0)
+    for (name, curve), color in zip(curves.items(), (style.OURS, style.INK), strict=False):
         lines[name], bands[name] = style.band(
-            claimed, mean, std, ax, color=color, marker="o", markersize=4, label=name
-        )
-        least = min(least, claimed.min(), (mean - std).min())
+            curve.claimed, curve.mean, curve.std, ax, color=color, marker="o", markersize=4,
+            label=name,
+        )  # fmt: skip
+        least = min(least, curve.claimed.min(), (curve.mean - curve.std).min())
     ends = (max(least - 0.03, 0.0), 1.01)
     ax.set(xlim=ends, ylim=ends, aspect="equal")
     ax.legend(frameon=False, loc="upper left")
-    return CalibrationPlot(ax, lines, bands)
+    return Plot(ax, lines=lines, bands=bands)
 
 
 def _belief_line(
     ax: Axes | None, title: str, ylim: tuple[float, float], size: tuple[float, float]
 ) -> Axes:
-    """Return axes on which a belief over two states is a place: p(s1) runs to the right."""
+    """Return axes on which a belief over two states is a point: p(s1) runs to the right."""
     if ax is None:
         _, ax = plt.subplots(figsize=size, layout="constrained")
     ax = style.axes(ax, xlabel="$p(s_1)$", title=title)

@@ -14,13 +14,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu._checks import array
 from arkaq_edu.pomdp.pruning import prune
-from arkaq_edu.pomdp.simplex import CORNERS, to_triangle
+from arkaq_edu.pomdp.simplex import to_triangle
 from arkaq_edu.pomdp.value import ValueFunction
 
 Floats = NDArray[np.float64]
 
-# In pictures of the bowl the triangle has its middle at the origin and its corners 1 away. The bowl
-# is this high, its middle this far above the origin, and the triangle this far below the bowl.
+#: The corners of the triangle of beliefs in pictures of the bowl: about the origin, each 1 away.
+CENTERED = np.sqrt(3) * (to_triangle(np.eye(3)) - to_triangle(np.eye(3)).mean(axis=0))
+# The bowl is this high, its middle this far above the origin, the triangle this far below the bowl.
 RISE, MIDDLE, DROP = 0.8, 0.3, 0.85
 # The direction the light comes from, on the picture as seen at azimuth 0: from the left, behind.
 LIGHT = np.array([-0.8, 0.6])
@@ -200,12 +201,12 @@ def bowl(V: ValueFunction, azimuth: float, elevation: float) -> Bowl:
     right, away = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
 
     def seen(b: Floats, value: Floats) -> Floats:
-        place = centered(b)
+        place = b @ CENTERED
         height = (value - low) * scale - RISE / 2 + MIDDLE
         return np.column_stack([place @ right, place @ away * np.sin(up) + height * np.cos(up)])
 
     # The gradient of b . alpha on the picture: the corners sum to 0, and their squares to 3/2.
-    slopes = {k: scale * A[k] @ centered(np.eye(3)) * 2 / 3 for k in polygons}
+    slopes = {k: scale * A[k] @ CENTERED * 2 / 3 for k in polygons}
     order = sorted(polygons, key=lambda k: -float(slopes[k] @ away))
     light = np.array([slopes[k] for k in order]) @ LIGHT
     floor, corners = low - DROP / scale, np.eye(3)
@@ -216,23 +217,3 @@ def bowl(V: ValueFunction, azimuth: float, elevation: float) -> Bowl:
         (light - light.min()) / max(np.ptp(light), 1e-9),
         np.stack([seen(corners, np.full(3, floor)), seen(corners, A.max(axis=0))], axis=1),
     )
-
-
-def centered(b: ArrayLike) -> Floats:
-    """Return where beliefs over three states lie in a triangle about the origin, corners 1 away.
-
-    Parameters
-    ----------
-    b : array_like, shape (N, 3)
-        The beliefs.
-
-    Returns
-    -------
-    ndarray, shape (N, 2)
-
-    Examples
-    --------
-    >>> np.linalg.norm(centered(np.eye(3)), axis=1).round(9)
-    array([1., 1., 1.])
-    """
-    return np.sqrt(3) * (to_triangle(b) - CORNERS.mean(axis=0))

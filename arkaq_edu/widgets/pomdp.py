@@ -7,30 +7,23 @@ from itertools import pairwise
 
 import ipywidgets
 import numpy as np
-from matplotlib.colors import to_hex
 from numpy.typing import NDArray
 
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.figures.pomdp import (
-    COLORS,
-    CORNERS,
-    bowl,
-    paler,
-    shaded,
-    solved,
-    surface_line,
-    upper_surface,
-)
-from arkaq_edu.pomdp import PolicyTree, ValueFunction, problem
+from arkaq_edu.figures.drawing.style import POMDP_ACTIONS
+from arkaq_edu.pomdp import PolicyTree, bowl, problem, solved, upper_surface
+from arkaq_edu.pomdp.backup import candidates, n_candidates
+from arkaq_edu.pomdp.surface import CENTERED
 from arkaq_edu.widgets.explorer import Drag, Explorer, wide
 from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Text
 
 Floats = NDArray[np.float64]
+Values = NDArray[np.floating]
 
 #: Horizons that the explorers can show.
 HORIZONS = range(1, 6)
-_FADED = 128  # lines that can be told from each other at all
-_THIN = 0.01  # a face of a smaller area is all border
+_FADED = 128  # more lines could not be distinguished
+_THIN = 0.01  # a face with a smaller area consists of its border only
 _FAINT = "#dcdcdc"
 
 
@@ -73,7 +66,7 @@ def draw_value(horizon: int, belief: float) -> Scene:
     Parameters
     ----------
     horizon : int
-        Steps to go.
+        The number of steps to go.
     belief : float in [0, 1]
         The probability of s1.
 
@@ -88,54 +81,20 @@ def draw_value(horizon: int, belief: float) -> Scene:
     fact = (
         f"{horizon} step{'' if horizon == 1 else 's'} to go, p(s1) = {belief:.2f}: "
         f"worth {value:.3f}, begin with {pomdp.actions[tree.action]}; "
-        f"{len(V)} of {how_many(V):,} plans are needed"
+        f"{len(V)} of {n_candidates(pomdp, V):,} plans are needed"
     )
     return Scene(fact, [_surface(horizon, belief, value), _plan(tree)])
 
 
-def how_many(V: ValueFunction) -> int:
-    """Return from how many plans those of a value function of "two_state" are chosen.
-
-    They are an action, and after each observation one of the plans that are needed for a step less.
-
-    Examples
-    --------
-    >>> [how_many(solved("two_state", horizon)) for horizon in (1, 2, 3)]
-    [2, 16, 128]
-    """
-    pomdp = problem("two_state")
-    return pomdp.n_actions * (len(V.shorter) ** pomdp.n_observations if V.shorter else 1)
-
-
-def candidates(V: ValueFunction, at_most: int = _FADED) -> Floats:
-    """Return the vectors of the plans from which those of "two_state" are chosen, or some of them.
-
-    Examples
-    --------
-    >>> candidates(solved("two_state", 2)).shape, candidates(solved("two_state", 4)).shape
-    ((16, 2), (128, 2))
-    """
-    pomdp = problem("two_state")
-    if V.shorter is None:
-        return pomdp.R.T
-    total, rest = how_many(V), V.shorter.alphas
-    picked = np.linspace(0, total - 1, min(total, at_most)).astype(int)
-    sizes = (pomdp.n_actions, *[len(rest)] * pomdp.n_observations)
-    a, *after = np.unravel_index(picked, sizes)
-    later = sum(pomdp.O[a, :, z] * rest[k] for z, k in enumerate(after))
-    return pomdp.R.T[a] + pomdp.gamma * np.einsum("ast,at->as", pomdp.T[a], later)
-
-
 @lru_cache(maxsize=len(HORIZONS))
 def _still(horizon: int) -> tuple[list[Layer], tuple[float, float]]:
-    """Return what does not move with the belief: the lines and the surface, and the axis' ends."""
+    """Return what does not depend on the belief: the lines, the surface, the ends of the axis."""
     pomdp, V = problem("two_state"), solved("two_state", horizon)
-    layers: list[Layer] = [_lines(candidates(V), _FAINT, 0.8)]
-    colors = [COLORS[name] for name in pomdp.actions]
-    plans, ends = upper_surface(V.alphas)
-    p, value = surface_line(V.alphas)
+    layers: list[Layer] = [_lines(candidates(pomdp, V, _FADED), _FAINT, 0.8)]
+    colors = [POMDP_ACTIONS[name] for name in pomdp.actions]
+    plans, p, value = upper_surface(V.alphas)
     for a, color in enumerate(colors):
-        layers.append(_lines(V.alphas[V.actions == a], to_hex(paler(color, 0.4)), 1.0))
+        layers.append(_lines(V.alphas[V.actions == a], style.paler(color, 0.4), 1.0))
     for a, color in enumerate(colors):
         own = np.flatnonzero(V.actions[plans] == a)
         layers.append(_pieces(p[own], p[own + 1], value[own], value[own + 1], color, 4.0))
@@ -143,7 +102,7 @@ def _still(horizon: int) -> tuple[list[Layer], tuple[float, float]]:
     foot = 0.55 * low
     strips = [
         np.array([[left, low], [right, low], [right, foot], [left, foot]])
-        for left, right in pairwise(ends)
+        for left, right in pairwise(p)
     ]
     layers.append(Cells(strips, V.actions[plans].tolist(), (0, 1, low, high), colors, border=0))
     for a, (color, x) in enumerate(zip(colors, (0.72, 0.86), strict=True)):
@@ -152,15 +111,15 @@ def _still(horizon: int) -> tuple[list[Layer], tuple[float, float]]:
     return layers, (low, high)
 
 
-def _lines(alphas: Floats, color: str, width: float) -> Line:
+def _lines(alphas: Values, color: str, width: float) -> Line:
     ends = np.ones(len(alphas))
     return _pieces(0 * ends, ends, alphas[:, 1], alphas[:, 0], color, width)
 
 
 def _pieces(
-    left: Floats, right: Floats, low: Floats, high: Floats, color: str, width: float
+    left: Values, right: Values, low: Values, high: Values, color: str, width: float
 ) -> Line:
-    """Return many straight pieces as one line, the pen lifted between them."""
+    """Return many separate pieces as one line: where x and y are NaN it is interrupted."""
     gap = np.full(len(left), np.nan)
     x, y = np.column_stack([left, right, gap]), np.column_stack([low, high, gap])
     return Line(x.ravel(), y.ravel(), color, width)
@@ -177,7 +136,7 @@ def _surface(horizon: int, p: float, value: float) -> Panel:
 
 
 def _plan(tree: PolicyTree) -> Panel:
-    """Return a picture of a plan; of a long one the first three steps."""
+    """Return a picture of the first three steps of a plan."""
     pomdp = problem("two_state")
     layers: list[Layer] = []
     nodes: dict[int, list[tuple[float, float]]] = {a: [] for a in range(pomdp.n_actions)}
@@ -199,18 +158,18 @@ def _plan(tree: PolicyTree) -> Panel:
     for a, places in nodes.items():
         if places:
             x, y = np.transpose(places)
-            layers.append(Points(x, y, 12.0, COLORS[pomdp.actions[a]]))
+            layers.append(Points(x, y, 12.0, POMDP_ACTIONS[pomdp.actions[a]]))
             layers += [Text(*place, pomdp.actions[a], "#ffffff", "center") for place in places]
     if tree.depth > 3:
         more = tree.depth - 3
-        told = f"and {more} step{'' if more == 1 else 's'} more"
-        layers.append(Text(0.0, -4.3, told, style.QUIET, "center"))
+        text = f"and {more} step{'' if more == 1 else 's'} more"
+        layers.append(Text(0.0, -4.3, text, style.QUIET, "center"))
     layers.append(Text(0.0, 4.6, "the best plan here", style.QUIET, "center"))
     return Panel("", "", (-4.8, 4.8), (-4.8, 5.0), layers, bare=True)
 
 
 def bowl_explorer() -> Explorer:
-    """Return the value function over three states: a bowl that can be turned, and its map.
+    """Return the value function over three states: a bowl that can be turned, seen also from above.
 
     Returns
     -------
@@ -246,7 +205,7 @@ def draw_bowl(horizon: int, view: tuple[float, float]) -> Scene:
     Parameters
     ----------
     horizon : int
-        Steps to go in the problem "three_places".
+        The number of steps to go in the problem "three_places".
     view : tuple of two float
         Azimuth and elevation, in degrees.
 
@@ -264,30 +223,32 @@ def draw_bowl(horizon: int, view: tuple[float, float]) -> Scene:
     )
     names = [pomdp.actions[a] for a in V.actions]
     seen = bowl(V, azimuth, elevation)
-    colors = [COLORS[names[k]] for k in seen.plans]
+    colors = [POMDP_ACTIONS[names[k]] for k in seen.plans]
+    bright = style.shaded(colors, seen.light)
     window = (-1.3, 1.3, -1.4, 1.4)
     layers: list[Layer] = [
-        _cells(seen.shadows, [to_hex(paler(color, 0.55)) for color in colors], window),
+        _cells(seen.shadows, [style.paler(color, 0.55) for color in colors], window),
         *(Line(post[:, 0], post[:, 1], style.QUIET, 1.0, dashed=True) for post in seen.corners),
-        *_edges(seen.faces, shaded(colors, seen)),
-        _cells(seen.faces, shaded(colors, seen), window),
+        *_edges(seen.faces, bright),
+        _cells(seen.faces, bright, window),
     ]
     for (_, (x, y)), name in zip(seen.corners, pomdp.states, strict=True):
         layers.append(Text(x, y + 0.09, name, style.INK, "center"))
     turned = Panel("", "", window[:2], window[2:], layers, width=1.2, bare=True)
 
     above = bowl(V, 0, 90)
-    flat: list[Layer] = [_cells(above.shadows, [COLORS[names[k]] for k in above.plans], window)]
-    for (x, y), name in zip(1.12 * CORNERS, pomdp.states, strict=True):
+    own = [POMDP_ACTIONS[names[k]] for k in above.plans]
+    flat: list[Layer] = [_cells(above.shadows, own, window)]
+    for (x, y), name in zip(1.12 * CENTERED, pomdp.states, strict=True):
         flat.append(Text(x, y, name, style.INK, "center"))
     for i, name in enumerate(pomdp.actions):
         x, y = -0.95 + 1.1 * (i % 2), -0.9 - 0.17 * (i // 2)
-        flat += [Points([x], [y], 6.0, COLORS[name]), Text(x + 0.1, y, name)]
+        flat += [Points([x], [y], 6.0, POMDP_ACTIONS[name]), Text(x + 0.1, y, name)]
     return Scene(fact, [turned, Panel("", "", window[:2], window[2:], flat, bare=True)])
 
 
 def _edges(polygons: list[Floats], colors: list[str]) -> list[Layer]:
-    """Return the outlines of those polygons that are seen edge-on, and else would not be seen."""
+    """Return the outlines of polygons seen edge-on, whose areas alone would be invisible."""
     edges: list[Layer] = []
     for polygon, color in zip(polygons, colors, strict=True):
         x, y = np.vstack([polygon, polygon[:1]]).T
@@ -299,5 +260,5 @@ def _edges(polygons: list[Floats], colors: list[str]) -> list[Layer]:
 def _cells(
     polygons: list[Floats], colors: list[str], window: tuple[float, float, float, float]
 ) -> Cells:
-    """Return polygons of a color each, that are drawn in their order."""
+    """Return polygons, each in a color of its own, drawn in their order."""
     return Cells(polygons, range(len(polygons)), window, colors, border=0.7)

@@ -60,12 +60,14 @@ def test_figure_2_5_has_the_causes_of_a_pomdp(ax):
 
 def test_figure_2_6_counts_robots_where_the_thesis_counts_floors(ax):
     plot = belief.figure_2_6(ax)
-    assert plot.beliefs() == pytest.approx(np.array([floors_by_counting(0), floors_by_counting(1)]))
-    assert plot.beliefs()[1].tolist() == [0, 0.25, 0.25, 0.5]
+    assert plot.beliefs == pytest.approx(np.array([floors_by_counting(0), floors_by_counting(1)]))
+    assert plot.beliefs[1].tolist() == [0, 0.25, 0.25, 0.5]
+    heights = np.array([[bar.get_height() for bar in row] for row in plot.bars])
+    assert heights == pytest.approx(plot.beliefs)
     marks = np.column_stack(plot.printed.get_data())
     foot = plot.bars[1][0].get_y()
     assert marks[:, 1] - foot == pytest.approx([0, 0.33, 0.33, 0.33])
-    possible = plot.beliefs()[1] > 0
+    possible = plot.beliefs[1] > 0
     assert marks[:, 1] - foot == pytest.approx(possible / possible.sum(), abs=0.004)
     assert plot.printed.get_markerfacecolor() == "none"
     for mark, bar in zip(marks, plot.bars[1], strict=True):
@@ -76,8 +78,8 @@ def test_figure_2_6_counts_robots_where_the_thesis_counts_floors(ax):
 def test_figure_2_7_is_what_the_thesis_prints(ax):
     plot = belief.figure_2_7(ax)
     printed = [[0.333, 0.333, 0, 0.333], [0.1, 0.45, 0, 0.45], [0.1, 0.164, 0, 0.736]]
-    assert plot.beliefs().round(3).tolist() == printed
-    assert plot.beliefs() == pytest.approx(np.array([corridor_by_paths(n) for n in range(3)]))
+    assert plot.beliefs.round(3).tolist() == printed
+    assert plot.beliefs == pytest.approx(np.array([corridor_by_paths(n) for n in range(3)]))
     assert plot.printed is None
     assert repr(plot).endswith("[.100 .450 .000 .450], [.100 .164 .000 .736]")
 
@@ -167,6 +169,8 @@ def test_calibration_is_a_mean_and_a_deviation_over_seeds(ax):
 def test_every_figure_makes_its_own_axes():
     for number in ("2_5", "2_6", "2_7", "2_8", "2_13"):
         plot = getattr(belief, f"figure_{number}")()
-        assert plot.ax.figure.number in plt.get_fignums() and len(repr(plot)) > 20
+        assert plot.ax.figure.number in plt.get_fignums()
+        title = plot.ax.get_title(loc="left")
+        assert title and repr(plot).startswith(title)
         plot.ax.figure.draw_without_rendering()
         plt.close(plot.ax.figure)

@@ -19,10 +19,9 @@ from arkaq_edu.pomdp import (
     upper_surface,
 )
 from arkaq_edu.pomdp.backup import candidates
-from arkaq_edu.pomdp.surface import centered
+from arkaq_edu.pomdp.surface import CENTERED
 
 BELIEFS = np.linspace(0, 1, 201)
-CORNERS = centered(np.eye(3))
 
 
 @pytest.mark.parametrize(("name", "horizon"), [("tiger", 1), ("two_state", 1), ("two_state", 2)])
@@ -63,7 +62,7 @@ def test_the_faces_of_the_bowl_are_where_each_plan_is_best(horizon):
     for k, shadow in zip(seen.plans, seen.shadows, strict=True):
         # The same region by qhull: the lead over every other plan, inside the triangle.
         ahead = V.alphas[k] - np.delete(V.alphas, k, axis=0)
-        to_plane = np.column_stack([CORNERS, np.ones(3)])
+        to_plane = np.column_stack([CENTERED, np.ones(3)])
         planes = -np.vstack([ahead, np.eye(3)]) @ np.linalg.inv(to_plane).T
         inside = shadow.mean(axis=0)
         corners = HalfspaceIntersection(planes, inside).intersections
@@ -74,7 +73,7 @@ def test_the_faces_of_the_bowl_are_where_each_plan_is_best(horizon):
             pytest.approx(beliefs @ V.alphas[k])
         )
     area = sum(map(_area, seen.shadows))
-    assert area == pytest.approx(_area(CORNERS))
+    assert area == pytest.approx(_area(CENTERED))
 
 
 def _area(polygon):

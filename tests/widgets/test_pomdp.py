@@ -1,13 +1,12 @@
 """Value functions explored without a browser: sliders, drags and keys, and what they show."""
 
-import itertools
 import re
 
 import numpy as np
 import pytest
 
-from arkaq_edu.figures.pomdp import COLORS
-from arkaq_edu.pomdp import PolicyTree, all_trees, problem, prune, solve_pomdp, tree_value
+from arkaq_edu.figures.drawing.style import POMDP_ACTIONS
+from arkaq_edu.pomdp import all_trees, problem, solve_pomdp, tree_value
 from arkaq_edu.widgets import bowl_explorer, pomdp, value_explorer
 from arkaq_edu.widgets.scene import Cells, Line, Points, Text
 
@@ -99,19 +98,7 @@ def test_the_lines_are_those_of_the_plans(explorer, horizon):
     strip = next(layer for layer in rest if isinstance(layer, Cells))
     for polygon, color in zip(strip.polygons, strip.colors, strict=True):
         mid = polygon[:, 0].mean()
-        assert strip.palette[color] == COLORS[TWO.actions[V.action([mid, 1 - mid])]]
-
-
-def test_the_faded_lines_of_three_steps_are_all_the_plans_of_kept_plans():
-    V = solve_pomdp(TWO, 3)
-    kept = [V.shorter.tree(k) for k in range(len(V.shorter))]
-    by_hand = [
-        tree_value(TWO, PolicyTree(a, after))
-        for a in range(2)
-        for after in itertools.product(kept, repeat=3)
-    ]
-    assert pomdp.candidates(V) == pytest.approx(np.array(by_hand))
-    assert len(prune(by_hand)) == len(V) == 7
+        assert strip.palette[color] == POMDP_ACTIONS[TWO.actions[V.action([mid, 1 - mid])]]
 
 
 def test_the_belief_is_dragged_along_the_picture(explorer):
@@ -147,7 +134,7 @@ def test_the_bowl_states_its_planes_and_its_heights(bowl, horizon):
     (regions,) = (x for x in flat.layers if isinstance(x, Cells))
     assert len(shadows.polygons) == len(faces.polygons) == len(regions.polygons) == len(V)
     assert list(faces.colors) == list(range(len(V))), "drawn one after the other"
-    own = [COLORS[THREE.actions[a]] for a in V.actions]
+    own = [POMDP_ACTIONS[THREE.actions[a]] for a in V.actions]
     assert sorted(regions.palette) == sorted(own)
     named = [x.text for x in flat.layers if isinstance(x, Text)]
     assert named == [*THREE.states, *THREE.actions]

@@ -26,6 +26,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import FillBetweenPolyCollection, PolyCollection
+from matplotlib.colors import to_hex, to_rgb
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike, NDArray
 
@@ -33,6 +34,17 @@ INK = "#222222"
 QUIET = "#6b6b6b"
 OURS = "#8a2f74"  # what we computed, unless it has the color of an action
 ACTIONS = {"forward": "#16324f", "left": "#c8501e", "right": "#5aaadf", "kick": "#f4d24a"}
+# The actions of the course's POMDPs, each in the color of a similar action of the robot.
+POMDP_ACTIONS = {
+    name: ACTIONS[like]
+    for like, names in {
+        "forward": ("a1", "down", "listen", "step-ahead"),
+        "left": ("a2", "left", "open-left", "step-left", "turn-left", "up"),
+        "right": ("open-right", "right", "step-right", "turn-right"),
+        "kick": ("look",),
+    }.items()
+    for name in names
+}
 # From light to dark. A search found these six soft colors: they stay distinct for every kind of
 # color vision.
 CELLS = ("#d6f4f4", "#e1e5cf", "#a4e2f7", "#dccda4", "#a5cacc", "#afbda8")
@@ -196,3 +208,37 @@ def border_width(n: int) -> float:
     True
     """
     return float(np.clip(9 / np.sqrt(max(n, 1)), 0.15, 1.0))
+
+
+def paler(color: str, share: float) -> str:
+    """Return a color with a share of white in it.
+
+    Examples
+    --------
+    >>> paler("#000000", 0.2)
+    '#333333'
+    """
+    red, green, blue = (channel + share * (1 - channel) for channel in to_rgb(color))
+    return to_hex((red, green, blue))
+
+
+def shaded(colors: Sequence[str], light: NDArray[np.float64]) -> list[str]:
+    """Return the colors of the faces of a body, paler where more light (0 to 1) falls on a face.
+
+    Examples
+    --------
+    >>> shaded(["#000000", "#000000"], np.array([0.0, 1.0]))
+    ['#262626', '#737373']
+    """
+    return [paler(color, 0.15 + 0.3 * part) for color, part in zip(colors, light, strict=True)]
+
+
+def probability(p: float, digits: int = 2) -> str:
+    """Return a probability without the zero before its point.
+
+    Examples
+    --------
+    >>> probability(0.25), probability(0.9996, 3), probability(1)
+    ('.25', '1.000', '1.00')
+    """
+    return f"{p:.{digits}f}".removeprefix("0")
