@@ -45,6 +45,14 @@ _ROW = 1.2  # the distance from one belief to the next
 _LARGEST = 30.0  # the dot of figure 2.13 for a probability of 1, in points
 
 
+class BeliefsPlot(Plot):
+    """What `plot_beliefs` drew. It states the numbers, too."""
+
+    def __repr__(self) -> str:
+        """Return the title with the numbers."""
+        return self.fact
+
+
 def belief_words(b: ArrayLike) -> str:
     """Return a belief as the thesis prints it, to three digits.
 
@@ -174,7 +182,7 @@ def plot_beliefs(
         ax.legend(frameon=False, loc="upper right")
     rows = ", ".join(map(belief_words, b))
     fact = f"{title}: {rows}" if title else rows
-    return Plot(ax, fact, beliefs=b, bars=bars, printed=hollow)
+    return BeliefsPlot(ax, fact, beliefs=b, bars=bars, printed=hollow)
 
 
 def figure_2_6(ax: Axes | None = None) -> Plot:

@@ -15,7 +15,7 @@ class Plot:
     ax : matplotlib.axes.Axes or sequence of Axes
         The axes that were drawn on.
     fact : str, default ""
-        What the picture states, if the titles of its axes do not say it.
+        What the picture states, for axes without a title of their own.
     **artists
         The artists, or the data behind them, by name. Each becomes an attribute.
 
@@ -27,7 +27,7 @@ class Plot:
     >>> plot, plot.line.get_xdata().tolist()
     (one line, [0.0, 1.0])
     >>> _ = ax.set_title("The line rises", loc="left")
-    >>> Plot(ax)
+    >>> plot
     The line rises
     """
 
@@ -41,6 +41,6 @@ class Plot:
         raise AttributeError(f"this plot has {', '.join(vars(self))}, and no {name!r}")
 
     def __repr__(self) -> str:
-        """Return the fact, or the titles of the axes if there is none."""
+        """Return the titles of the axes, or the fact where they have none."""
         titles = [ax.get_title(loc="left") for ax in np.ravel(self.ax)]
-        return self.fact or "; ".join(filter(None, titles))
+        return "; ".join(filter(None, titles)) or self.fact
