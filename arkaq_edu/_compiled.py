@@ -1,8 +1,8 @@
-"""Compile a kernel with numba where numba is there; run it as plain Python where it is not.
+"""Compile kernels with numba if it is installed; otherwise run them as plain Python.
 
-A kernel is a readable loop: it is the lesson. Numba compiles it at its first call, never at
-import, and keeps the machine code in a cache on disk, so that later processes start at once.
-Set the environment variable ``NUMBA_DISABLE_JIT=1`` to step through a kernel in a debugger.
+A kernel is a function that numba compiles at its first call, never at import. The machine code is
+cached on disk, so later processes start at once. Set the environment variable
+``NUMBA_DISABLE_JIT=1`` to step through a kernel in a debugger.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from typing import Any
 
 try:
     import numba
-except ImportError:  # a browser's Python has none: the same loops then run, slowly
+except ImportError:  # as in a browser's Python, where the same loops run slowly
     numba = None  # type: ignore[assignment]
 
 HAVE_NUMBA = numba is not None
 
 
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return `function` compiled (nopython mode, cached on disk), or as it is without numba.
+    """Return `function` compiled (nopython mode, cached on disk), or unchanged without numba.
 
-    Floating-point arithmetic keeps its order (no ``fastmath``), so compiled and plain runs agree
-    to the last bit.
+    Floating-point operations keep their order (no ``fastmath``), so compiled and plain runs give
+    exactly the same numbers.
 
     Examples
     --------
@@ -41,21 +41,21 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """
     if numba is None:
         return function
-    # What was typed at a prompt has no file beside which the machine code could be kept.
+    # A function typed at a prompt has no file beside which its machine code could be cached.
     return numba.njit(cache=os.path.exists(function.__code__.co_filename))(function)
 
 
 def word_before_compiling(function: Callable[..., Any], what: str) -> None:
-    """Say on a terminal that a kernel is about to be compiled, where that takes long.
+    """Say on a terminal that a kernel is about to be compiled, if that takes long.
 
-    In a notebook nothing is said: what a cell shows must be the same every time.
+    In a notebook it says nothing, because the output of a cell must be the same every time.
 
     Examples
     --------
     >>> word_before_compiling(kernel(lambda x: x), "nothing")
     """
     if not sys.stderr.isatty() or getattr(function, "signatures", True):
-        return  # nobody to read it, no numba, or compiled already
+        return  # no reader, no numba, or already compiled
     cache = Path(function.stats.cache_path or "")  # type: ignore[attr-defined]
     if not any(cache.glob(f"*{function.__name__}-*.nbi")):
-        print(f"Compiling {what}, once: this takes some ten seconds.", file=sys.stderr)
+        print(f"Compiling {what}. This happens once and takes about ten seconds.", file=sys.stderr)
