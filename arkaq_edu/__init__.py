@@ -1,15 +1,16 @@
-"""ARKAQ learning, taught: a Kalman filter, an ART network and Q-learning on a legged robot.
+"""A course on a robot that learns: a Kalman filter, an ART network and Q-learning.
 
 Units everywhere: millimeters, radians, seconds, grams. Orientation is positive to the left.
 
-The rooms of the house, from the ground up (a room imports only from those before it):
+The subpackages, from the bottom up; each imports only from those above it in this list:
 
 - `kalman`, `art`, `mdp`, `pomdp`: the methods, from scratch;
-- `field`: the football field, the ball, the legged robot and its camera;
-- `arkaq`: the agent, made of a world model and a policy;
+- `field`: the football field with ball, legged robot and camera;
+- `arkaq`: the agent, which consists of a world model and a policy;
 - `envs`: the tasks as Gymnasium environments;
-- `experiments`, `figures`: the thesis's experiments and its figures;
-- `widgets`, `exercises`: what the notebooks use;
+- `experiments`: the experiments of the thesis;
+- `figures`: its figures;
+- `widgets`, `exercises`: the interactive parts of the notebooks;
 - `cli`: the ``arkaq`` command.
 """
 

@@ -1,4 +1,4 @@
-"""Where the course's notebooks and data lie, and how a student gets a copy of their own."""
+"""Where the notebooks and data of the course are, and how a student gets a copy."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _SOLUTION = re.compile(r"^( *)### BEGIN SOLUTION\n.*?^ *### END SOLUTION", re.MU
 
 
 def in_repository() -> bool:
-    """Tell whether the package runs from the repository rather than from a wheel.
+    """Return whether the package runs from the repository rather than from a wheel.
 
     Examples
     --------
@@ -25,7 +25,7 @@ def in_repository() -> bool:
 def course_folder() -> Path:
     """Return the folder that holds ``notebooks`` and ``data``.
 
-    In a wheel that is a folder inside the package; in the repository it is the repository's root.
+    In a wheel it is a folder inside the package; in the repository it is the root.
 
     Examples
     --------
@@ -47,7 +47,7 @@ def data_file(name: str) -> Path:
     Raises
     ------
     FileNotFoundError
-        If there is no such file; the message names those there are.
+        If there is no such file. The message lists the files that exist.
 
     Examples
     --------
@@ -64,22 +64,22 @@ def data_file(name: str) -> Path:
 
 
 def copy_course(folder: Path | str) -> tuple[list[Path], list[Path]]:
-    """Copy the course into `folder`, and never over anything that is there already.
+    """Copy the course into `folder` without overwriting anything.
 
-    The exercises are left open: their solutions, and what the checks said to them, stay behind.
+    The copy contains no solutions and no outputs of the checks.
 
     Parameters
     ----------
     folder : path
-        Made if it does not exist.
+        It is created if it does not exist.
 
     Returns
     -------
     copied : list of Path
-        What was new in `folder`, relative to it.
+        The new files, relative to `folder`.
     kept : list of Path
-        What was there and differs from the course, relative to `folder`: the reader's own work.
-        It is left as it is.
+        The existing files that differ from the course, relative to `folder`. They are the
+        reader's own work and stay unchanged.
 
     Examples
     --------
@@ -105,7 +105,7 @@ def copy_course(folder: Path | str) -> tuple[list[Path], list[Path]]:
 
 
 def without_solutions(notebook: Path) -> bytes:
-    """Return a notebook with its exercises open, as a student gets it.
+    """Return a notebook without the solutions of its exercises, as a student gets it.
 
     Examples
     --------
@@ -129,7 +129,7 @@ def without_solutions(notebook: Path) -> bytes:
 
 
 def _files(folder: Path) -> list[Path]:
-    """List what of `folder` belongs to the course: no tools, caches or checkpoints."""
+    """List the files of the course in `folder`: no tools, caches or checkpoints."""
     return [
         path
         for path in sorted(folder.rglob("*"))

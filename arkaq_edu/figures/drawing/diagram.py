@@ -3,6 +3,7 @@
 Examples
 --------
 >>> from matplotlib.figure import Figure
+>>> from arkaq_edu.figures.drawing.plot import Plot
 >>> ax = blank(Figure().subplots(), "a look becomes a step", (0, 4), (0, 1))
 >>> parts = {"look": box(ax, (1, 0.5), "look"), "step": box(ax, (3, 0.5), "step")}
 >>> Plot(ax, parts=parts, arrow=wire(ax, (1.55, 0.5), (2.45, 0.5)))
@@ -22,19 +23,11 @@ from matplotlib.text import Text
 from numpy.typing import NDArray
 
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.figures.drawing.plot import Plot
 
 Place = tuple[float, float]
 
 # How far circles, squares and diamonds reach from their center.
 _CIRCLE, _SQUARE, _DIAMOND = 0.34, 0.31, 0.42
-
-
-class Diagram(Plot):
-    """What a diagram is made of: its parts, and its wires by (from, to)."""
-
-    def __init__(self, ax: Axes, parts: dict[str, Text], wires: dict) -> None:
-        super().__init__(ax, parts=parts, wires=wires)
 
 
 def blank(ax: Axes | None, title: str, xlim: Place, ylim: Place, inch: float = 0.75) -> Axes:
