@@ -2,9 +2,10 @@
 
     python benchmarks/bench_q_learning.py
 
-A peer that is not installed (mushroom-rl, quantecon, pymdptoolbox) is left out. Each figure is the
-median of several rounds; a round runs ourselves and every peer once, so that a busy machine slows
-all of them alike, and the ratio is the median of the ratios of the rounds.
+A peer that is not installed (mushroom-rl, quantecon, pymdptoolbox) is left out. "Limit" is the same
+arithmetic in one plain compiled loop. Each number is the median of several rounds. A round runs our
+code and every peer once, so that a busy machine slows all of them alike; the ratio is the median of
+the ratios of the rounds.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from arkaq_edu._compiled import kernel
 from arkaq_edu.mdp import MDP, QLearner, policy_iteration, train, value_iteration
 
 N_STATES, N_ACTIONS, GAMMA = 337, 3, 0.9
@@ -23,7 +25,7 @@ ROUNDS = 7
 
 
 def world(n_states: int = N_STATES, n_actions: int = N_ACTIONS) -> MDP:
-    """Return a random model in which a few states can follow each."""
+    """Return a random model where each action leads to a few states."""
     rng = np.random.default_rng(0)
     T = rng.dirichlet(np.full(n_states, 0.05), size=(n_actions, n_states))
     return MDP(T, rng.normal(size=(n_states, n_actions)), GAMMA)
@@ -48,6 +50,35 @@ def compare(title: str, amount: int, ours: Callable[[], object], **peers: tuple[
         peer = statistics.median(r[1][name] for r in rounds)
         ratio = statistics.median(r[1][name] / r[0] for r in rounds)
         print(f"    {name:30} {peer * 1e6:12.3f} us {1 / peer:16,.0f} /s   we: {ratio:,.1f} times")
+
+
+@kernel
+def limit_of_replay(Q, visits, s, a, r, s_next, alpha, gamma, changes):
+    for t in range(len(s)):
+        best = Q[s_next[t], 0]
+        for b in range(1, Q.shape[1]):
+            best = max(best, Q[s_next[t], b])
+        old = Q[s[t], a[t]]
+        Q[s[t], a[t]] += alpha * (r[t] + gamma * best - old)
+        visits[s[t], a[t]] += 1
+        changes[t] = Q[s[t], a[t]] - old
+
+
+@kernel
+def limit_of_training(Q, visits, cumulative, R, ends, u, alpha, gamma, changes):
+    s = 0
+    for t in range(len(u)):
+        a = int(u[t, 1] * Q.shape[1])
+        s_next = np.searchsorted(cumulative[a, s], u[t, 2], side="right")
+        best = Q[s_next, 0]
+        for b in range(1, Q.shape[1]):
+            best = max(best, Q[s_next, b])
+        target = R[s, a] + (0.0 if ends[s_next] else gamma * best)
+        old = Q[s, a]
+        Q[s, a] += alpha * (target - old)
+        visits[s, a] += 1
+        changes[t] = Q[s, a] - old
+        s = s_next
 
 
 def mushroom(n: int) -> dict[str, Callable[[], object]]:
@@ -97,13 +128,30 @@ def q_updates() -> None:
         for s, _, r, s_next in rows:
             learner.update(s, learner.boltzmann(s, 0.5), r, s_next)
 
+    def replay_limit() -> None:
+        limit_of_replay(learner.Q, learner.visits, s, a, r, s_next, 0.5, GAMMA, np.empty(n))
+
+    def training_limit() -> None:
+        u = learner.rng.random((n, 3))
+        limit_of_training(
+            learner.Q, learner.visits, model.cumulative, model.R, model.ends, u, 0.5, GAMMA,
+            np.empty(n),
+        )  # fmt: skip
+
+    replay_limit(), training_limit()  # compiled now
     peer = mushroom(5000)
     replay = {"mushroom-rl replay": (5000, peer["replay"])} if peer else {}
     learn = {"mushroom-rl learning loop": (5000, peer["learn"])} if peer else {}
     compare("update, called from Python", n, updates, **replay, **learn)
     compare("boltzmann + update, from Python", n, decisions, **learn)
-    compare("replay, one call", n, lambda: learner.replay(s, a, r, s_next, False), **replay)
-    compare("practice (model, choice, update)", n, lambda: train(model, learner, n), **learn)
+    compare(
+        "replay, one call", n, lambda: learner.replay(s, a, r, s_next, False),
+        **{"limit": (n, replay_limit)}, **replay,
+    )  # fmt: skip
+    compare(
+        "train (model, choice, update)", n, lambda: train(model, learner, n),
+        **{"limit": (n, training_limit)}, **learn,
+    )  # fmt: skip
 
 
 def planning() -> None:
