@@ -124,8 +124,8 @@ class TableLearner(BaseEstimator):
 
     def explore(self, s: int, rng: np.random.Generator) -> int:
         """Draw an action never backed up in `s`; where there is none, any action."""
-        untried = self.table.unvisited(s)
-        return int(rng.choice(untried if len(untried) else self.Q.shape[1]))
+        self.table.rng = rng
+        return self.table.explore(s)
 
     def exploit(self, s: int, temperature: float, rng: np.random.Generator) -> int:
         """Draw from the Boltzmann distribution (eq 3.2)."""

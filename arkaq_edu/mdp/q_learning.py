@@ -333,6 +333,39 @@ class QLearner:
         best = np.flatnonzero(q == q.max())
         return int(best[int(self.rng.random() * len(best))])
 
+    def explore(self, s: int) -> int:
+        """Draw an action that has had no backup in `s`; if there is none, any action.
+
+        Parameters
+        ----------
+        s : int
+            The state.
+
+        Returns
+        -------
+        int
+            The action.
+
+        Raises
+        ------
+        ValueError
+            If `s` is outside the table.
+
+        References
+        ----------
+        Thesis 4.3 (figure 4.3).
+
+        Examples
+        --------
+        >>> learner = QLearner(1, 2, alpha=1.0, gamma=0.0, rng=0)
+        >>> learner.update(0, 0, 5.0, 0)
+        5.0
+        >>> learner.explore(0)
+        1
+        """
+        untried = self.unvisited(s)
+        return int(self.rng.choice(untried if len(untried) else self.Q.shape[1]))
+
     def unvisited(self, s: int) -> NDArray[np.intp]:
         """Return the actions that have had no backup in `s`, in increasing order.
 

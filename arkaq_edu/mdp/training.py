@@ -275,14 +275,12 @@ def explore(
     >>> exploit(env, learner, max_backups=6).returns
     array([1.])
     """
-    n_actions = learner.Q.shape[1]
 
     def select(s: int, n: int) -> int:
-        untried = learner.unvisited(s)
-        return int(learner.rng.choice(untried if len(untried) else n_actions))
+        return learner.explore(s)
 
     def converged(quiet: Quiet) -> bool:
-        return len(quiet.pairs) == len(quiet.met) * n_actions
+        return len(quiet.pairs) == len(quiet.met) * learner.Q.shape[1]
 
     return learn(
         env, learner, select, converged,

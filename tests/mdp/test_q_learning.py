@@ -177,8 +177,10 @@ def test_unvisited_actions_go_one_by_one():
     learner.update(0, 1, 0.0, 1)
     assert learner.unvisited(0).tolist() == [0, 2]
     assert learner.unvisited(1).tolist() == [0, 1, 2]
+    assert {learner.explore(0) for _ in range(50)} == {0, 2}
     learner.replay(0, [0, 2], 0.0, 1, False)
     assert learner.unvisited(0).tolist() == []
+    assert {learner.explore(0) for _ in range(50)} == {0, 1, 2}
 
 
 def run(learner, n):
@@ -332,7 +334,7 @@ def test_replay_of_nothing_changes_nothing():
 @pytest.mark.parametrize("s", [-1, 2, 0.0, None])
 def test_choices_refuse_a_state_outside_the_table(s):
     learner = QLearner(2, 2, alpha=0.5, gamma=0.9)
-    calls = [learner.greedy, learner.unvisited]
+    calls = [learner.greedy, learner.explore, learner.unvisited]
     calls += [lambda s: learner.boltzmann(s, 1.0), lambda s: learner.probabilities(s, 1.0)]
     for call in calls:
         with pytest.raises(ValueError, match=r"s must be an integer in \[0, 1\], got"):
