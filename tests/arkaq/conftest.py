@@ -11,7 +11,7 @@ def brief():
 
 
 @pytest.fixture(scope="session")
-def kept(brief, tmp_path_factory):
-    path = tmp_path_factory.mktemp("kept") / "agent.npz"
+def saved(brief, tmp_path_factory):
+    path = tmp_path_factory.mktemp("saved") / "agent.npz"
     brief.save(path)
     return path

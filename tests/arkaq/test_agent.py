@@ -94,9 +94,9 @@ def test_an_agent_that_has_not_learned_cannot_act():
         Arkaq().act(np.zeros(3))
 
 
-def test_learning_leaves_no_episode_behind(kept):
+def test_learning_leaves_no_episode_behind(saved):
     """An agent just trained and the same one from its file see a first look alike."""
-    fresh, loaded = brief_agent(), Arkaq.load(kept)
+    fresh, loaded = brief_agent(), Arkaq.load(saved)
     env = near_task()
     for seed in range(4):
         observation, _ = env.reset(seed=seed)

@@ -109,8 +109,10 @@ SHARP = Sensing(low=(-0.5,), high=(0.5,), A=[[1]], H=[[1]], Q=[[100]], R=[[1e-9]
 
 def learn_corridor(learner, **settings):
     # So hot that the Boltzmann choice is any action.
-    law = TrainingSettings(patterns=20, gamma=0.9, hot=1e9, cold=1e9, **settings)
-    agent = Arkaq(sensing=SHARP, segmenter=UniformGrid((5,)), learner=learner, learning=law, rng=0)
+    training = TrainingSettings(patterns=20, gamma=0.9, hot=1e9, cold=1e9, **settings)
+    agent = Arkaq(
+        sensing=SHARP, segmenter=UniformGrid((5,)), learner=learner, learning=training, rng=0
+    )
     return agent.learn(Corridor(as_sightings=True, limit=12), progress=False)
 
 
@@ -127,14 +129,14 @@ def values_of_chance():
 
 
 def test_expected_sarsa_learns_the_value_of_chance():
-    law = {"exploration": 200, "exploitation": 3000, "hold": 1, "alpha_power": 0.0}
-    learned = learn_corridor(ExpectedSarsa(), **law)
+    training = {"exploration": 200, "exploitation": 3000, "hold": 1, "alpha_power": 0.0}
+    learned = learn_corridor(ExpectedSarsa(), **training)
     np.testing.assert_allclose(learned.q.Q, values_of_chance(), atol=1e-6)
 
 
 def test_sarsa_learns_the_value_of_chance_on_average():
-    law = {"exploration": 200, "exploitation": 12_000, "hold": 1, "alpha_power": 0.8}
-    learned = learn_corridor(Sarsa(), **law, alpha_least=0.0)
+    training = {"exploration": 200, "exploitation": 12_000, "hold": 1, "alpha_power": 0.8}
+    learned = learn_corridor(Sarsa(), **training, alpha_least=0.0)
     np.testing.assert_allclose(learned.q.Q, values_of_chance(), atol=0.5)
     best = {0: 0.0}
     for s in range(1, 5):
@@ -192,9 +194,9 @@ def test_the_automaton_is_the_loop_of_figures_4_3_and_4_4(hold):
 
 @pytest.mark.parametrize("kind", [Sarsa, ExpectedSarsa])
 def test_an_agent_learns_to_walk_to_the_ball_by_either(kind):
-    law = TrainingSettings(patterns=400, exploration=1800, exploitation=1800)
+    training = TrainingSettings(patterns=400, exploration=1800, exploitation=1800)
     env = near_task(far=2000.0)
-    learned = Arkaq(0.25, learner=kind(), learning=law, rng=1).learn(env, progress=False)
+    learned = Arkaq(0.25, learner=kind(), learning=training, rng=1).learn(env, progress=False)
     reached = []
     for k in range(30):
         observation, _ = env.reset(seed=10**6 + k)

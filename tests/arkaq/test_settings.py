@@ -8,9 +8,9 @@ from arkaq_edu.arkaq import TrainingSettings
 
 
 def test_schedules():
-    law = TrainingSettings(hot=8.0, cold=0.5, alpha_power=0.5, alpha_least=0.25)
-    assert [law.alpha(n) for n in (1, 4, 9, 16, 1000)] == [1, 0.5, 1 / 3, 0.25, 0.25]
-    assert [law.temperature(p) for p in (0.0, 0.5, 1.0)] == pytest.approx([8.0, 2.0, 0.5])
+    training = TrainingSettings(hot=8.0, cold=0.5, alpha_power=0.5, alpha_least=0.25)
+    assert [training.alpha(n) for n in (1, 4, 9, 16, 1000)] == [1, 0.5, 1 / 3, 0.25, 0.25]
+    assert [training.temperature(p) for p in (0.0, 0.5, 1.0)] == pytest.approx([8.0, 2.0, 0.5])
 
 
 @pytest.mark.parametrize(

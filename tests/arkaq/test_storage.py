@@ -30,8 +30,8 @@ from tests.arkaq.brief import (
 )
 
 
-def test_a_saved_agent_is_the_same_agent(brief, kept):
-    loaded = Arkaq.load(kept)
+def test_a_saved_agent_is_the_same_agent(brief, saved):
+    loaded = Arkaq.load(saved)
     assert digest(loaded) == digest(brief)
     for name, values in arrays(brief).items():
         assert np.array_equal(arrays(loaded)[name], values), name
@@ -42,17 +42,17 @@ def test_a_saved_agent_is_the_same_agent(brief, kept):
     assert loaded.history == brief.history
 
 
-def test_a_file_is_the_same_bytes_each_time_and_holds_no_code(brief, kept, tmp_path):
+def test_a_file_is_the_same_bytes_each_time_and_holds_no_code(brief, saved, tmp_path):
     again = tmp_path / "again.npz"
-    Arkaq.load(kept).save(again)
-    assert again.read_bytes() == kept.read_bytes()
+    Arkaq.load(saved).save(again)
+    assert again.read_bytes() == saved.read_bytes()
     assert os.listdir(tmp_path) == ["again.npz"]
-    with np.load(kept, allow_pickle=False) as file:
+    with np.load(saved, allow_pickle=False) as file:
         assert json.loads(str(file["settings"]))["format"] == 1
         assert np.array_equal(file["Q"], brief.q.Q)
 
 
-def test_a_scorer_is_kept_as_what_it_is(tmp_path):
+def test_a_scorer_is_saved_with_its_task(tmp_path):
     scorer, path = brief_scorer(), tmp_path / "scorer.npz"
     scorer.save(path)
     loaded = Arkaq.load(path)
@@ -69,7 +69,7 @@ def test_the_file_of_the_ball_is_what_it_was_before_there_was_a_goal(tmp_path):
     assert (tmp_path / "again.npz").read_bytes() == course.read_bytes()
 
 
-def test_an_agent_that_has_not_learned_can_be_kept_too(tmp_path):
+def test_an_agent_that_has_not_learned_can_be_saved_too(tmp_path):
     path = tmp_path / "young.npz"
     Arkaq(0.2, learning=BRIEF, rng=4).save(path)
     assert digest(Arkaq.load(path).learn(near_task(), progress=False)) == digest(brief_agent())
@@ -78,11 +78,11 @@ def test_an_agent_that_has_not_learned_can_be_kept_too(tmp_path):
 @pytest.mark.parametrize("kind", [np.int64, np.int32])
 def test_numpy_numbers_are_settings_too(tmp_path, kind):
     path = tmp_path / "agent.npz"
-    law = TrainingSettings(
+    training = TrainingSettings(
         patterns=kind(150), exploration=kind(200), exploitation=200, gamma=np.float32(0.5)
     )
-    Arkaq(np.float64(0.2), learning=law, rng=kind(4)).save(path)
-    assert Arkaq.load(path).learning == law
+    Arkaq(np.float64(0.2), learning=training, rng=kind(4)).save(path)
+    assert Arkaq.load(path).learning == training
 
 
 def test_a_save_that_fails_leaves_the_old_file(brief, tmp_path, monkeypatch):
@@ -106,16 +106,16 @@ def refused(path):
     return str(path) in str(caught.value)
 
 
-def test_a_truncated_file_is_refused(kept, tmp_path):
-    data, path = kept.read_bytes(), tmp_path / "short.npz"
+def test_a_truncated_file_is_refused(saved, tmp_path):
+    data, path = saved.read_bytes(), tmp_path / "short.npz"
     for length in [0, 1, 10, *range(50, len(data), 97), len(data) - 1]:
         path.write_bytes(data[:length])
         assert refused(path)
 
 
-def test_a_damaged_file_is_refused_or_unharmed(brief, kept, tmp_path):
-    """A flipped byte is noticed, unless it lies where nothing is kept, as in a file's date."""
-    data, path, rng = kept.read_bytes(), tmp_path / "damaged.npz", np.random.default_rng(0)
+def test_a_damaged_file_is_refused_or_unharmed(brief, saved, tmp_path):
+    """A flipped byte is noticed, unless it lies where nothing is saved, as in a file's date."""
+    data, path, rng = saved.read_bytes(), tmp_path / "damaged.npz", np.random.default_rng(0)
     caught = 0
     for place in [
         *range(0, 200, 3),
@@ -133,9 +133,9 @@ def test_a_damaged_file_is_refused_or_unharmed(brief, kept, tmp_path):
     assert caught > 150
 
 
-def altered(kept, path, settings=None, **changes):
+def altered(saved, path, settings=None, **changes):
     """Write the agent's file again with other contents; None takes an array out."""
-    with np.load(kept) as file:
+    with np.load(saved) as file:
         contents = {name: file[name] for name in file.files}
     changed = json.loads(str(contents["settings"])) | (settings or {})
     contents["settings"] = np.array(json.dumps(changed))
@@ -143,9 +143,9 @@ def altered(kept, path, settings=None, **changes):
     np.savez(path, **{name: values for name, values in contents.items() if values is not None})
 
 
-def test_an_altered_file_is_refused(brief, kept, tmp_path):
+def test_an_altered_file_is_refused(brief, saved, tmp_path):
     path = tmp_path / "altered.npz"
-    altered(kept, path)
+    altered(saved, path)
     assert digest(Arkaq.load(path)) == digest(brief)
     Q, visits, centers = brief.q.Q, brief.q.visits, brief.art.cluster_centers_
     contents = [
@@ -168,7 +168,7 @@ def test_an_altered_file_is_refused(brief, kept, tmp_path):
         {"centers": np.array([{"a": 1}], dtype=object)},
     ]
     for changes in contents:
-        altered(kept, path, **changes)
+        altered(saved, path, **changes)
         assert refused(path), changes
     settings = [
         {"format": 2}, {"format": None}, {"phase": "asleep"}, {"done_in_phase": -1},
@@ -177,7 +177,7 @@ def test_an_altered_file_is_refused(brief, kept, tmp_path):
         {"learning": []}, {"sensing": []}, {"sensing": {"low": [0], "high": [1]}},
     ]  # fmt: skip
     for changes in settings:
-        altered(kept, path, settings=changes)
+        altered(saved, path, settings=changes)
         assert refused(path), changes
 
 
@@ -273,8 +273,8 @@ def test_a_finished_run_is_not_run_again(brief, tmp_path):
     assert path.read_bytes() == before
 
 
-def test_a_checkpoint_of_another_run_is_refused_and_left_alone(kept):
-    before = kept.read_bytes()
+def test_a_checkpoint_of_another_run_is_refused_and_left_alone(saved):
+    before = saved.read_bytes()
     others = {
         "seed": Arkaq(0.2, learning=BRIEF, rng=5),
         "vigilance": Arkaq(0.25, learning=BRIEF, rng=4),
@@ -283,10 +283,10 @@ def test_a_checkpoint_of_another_run_is_refused_and_left_alone(kept):
     }
     for what, other in others.items():
         with pytest.raises(ValueError, match=f"another {what}") as caught:
-            other.learn(near_task(), kept, progress=False)
-        assert str(kept) in str(caught.value)
+            other.learn(near_task(), saved, progress=False)
+        assert str(saved) in str(caught.value)
         assert other.q is None
-    assert kept.read_bytes() == before
+    assert saved.read_bytes() == before
 
 
 def test_a_damaged_checkpoint_is_refused_and_left_alone(tmp_path):
@@ -372,16 +372,16 @@ def test_a_part_that_is_set_later_is_saved_as_what_it_is_or_refused(tmp_path):
         agent.save(path)
 
 
-def test_a_checkpoint_with_other_parts_is_refused(kept):
-    before = kept.read_bytes()
+def test_a_checkpoint_with_other_parts_is_refused(saved):
+    before = saved.read_bytes()
     for parts in PARTS:
         name = next(iter(parts))
         with pytest.raises(ValueError, match=f"another {name}"):
-            Arkaq(0.2, learning=BRIEF, rng=4, **parts).learn(near_task(), kept, progress=False)
-    assert kept.read_bytes() == before
+            Arkaq(0.2, learning=BRIEF, rng=4, **parts).learn(near_task(), saved, progress=False)
+    assert saved.read_bytes() == before
 
 
-def test_an_unknown_part_in_a_file_is_refused(brief, kept, tmp_path):
+def test_an_unknown_part_in_a_file_is_refused(brief, saved, tmp_path):
     path = tmp_path / "altered.npz"
     for settings in (
         {"segmenter": {"class": "os.system"}},
@@ -392,7 +392,7 @@ def test_an_unknown_part_in_a_file_is_refused(brief, kept, tmp_path):
         {"learner": {"class": "MyLearner"}},
         {"learner": {"class": "Sarsa", "speed": 2}},
     ):
-        altered(kept, path, settings=settings)
+        altered(saved, path, settings=settings)
         assert refused(path), settings
-    altered(kept, path, settings={"learner": {"class": "Sarsa"}})
+    altered(saved, path, settings={"learner": {"class": "Sarsa"}})
     assert digest(Arkaq.load(path)) == digest(brief)

@@ -31,9 +31,9 @@ def approaches(choose, begin, starts=80, far=2500.0):
 
 
 def test_a_small_agent_learns_to_walk_to_the_ball():
-    law = TrainingSettings(patterns=1200, exploration=3500, exploitation=3500)
+    training = TrainingSettings(patterns=1200, exploration=3500, exploitation=3500)
     env = gymnasium.make(TASK, far=2500.0)
-    learned = Arkaq(0.2, learning=law, rng=1).learn(env, progress=False)
+    learned = Arkaq(0.2, learning=training, rng=1).learn(env, progress=False)
     reached, earned = approaches(learned.act, lambda k: learned.reset())
     draws = np.random.default_rng(0)
     by_chance, earned_by_chance = approaches(lambda _: int(draws.integers(3)), lambda k: None)
@@ -103,11 +103,11 @@ def test_values_are_those_of_the_process_where_nothing_is_random(hold, explorati
         R=np.eye(2) * 1e-6,
         P0=np.eye(2) * 1e6,
     )
-    law = TrainingSettings(
+    training = TrainingSettings(
         patterns=600, exploration=exploration, exploitation=6000 - exploration, hold=hold,
         gamma=0.9, alpha_power=0.0, hot=1000.0, cold=1000.0, lost_reward=-50.0,
     )  # fmt: skip
-    learned = Arkaq(0.02, sensing=sharp, learning=law, rng=0).learn(Corridor(), progress=False)
+    learned = Arkaq(0.02, sensing=sharp, learning=training, rng=0).learn(Corridor(), progress=False)
     places = (sharp.unscale(learned.art.cluster_centers_)[:, 0] - 600) / 200
     assert sorted(places.round(3)) == list(range(1, 18))
     forward = {n: 100 * 0.9 ** (n - 1) for n in range(1, 18)}
@@ -151,12 +151,12 @@ def test_an_environment_of_the_other_task_is_refused(task, other):
 
 
 def test_values_of_the_goal_problem_are_those_of_the_process_where_nothing_is_random():
-    law = TrainingSettings.goal(
+    training = TrainingSettings.goal(
         patterns=200, exploration=6000, exploitation=0, gamma=0.9, alpha_power=0.0,
         cycle_reward=-4.0,
     )  # fmt: skip
     sharp = Sensing(low=(-0.5,), high=(0.5,), A=[[1]], H=[[1]], Q=[[100]], R=[[1e-9]], P0=[[100]])
-    learned = Arkaq(0.06, task="goal", sensing=sharp, learning=law, rng=0)
+    learned = Arkaq(0.06, task="goal", sensing=sharp, learning=training, rng=0)
     learned.learn(Turret(), progress=False)
     places = np.rint(learned.art.cluster_centers_[:, 0] / 0.28).astype(int)
     assert sorted(places) == list(range(-3, 4))
@@ -195,9 +195,9 @@ def test_an_action_is_held_while_the_state_stays_but_not_for_ever():
     def longest_run(hold):
         env = Noted(near_task(far=2500.0))
         env.episodes = []
-        law = TrainingSettings(patterns=1, exploration=1500, exploitation=0, hold=hold)
+        training = TrainingSettings(patterns=1, exploration=1500, exploitation=0, hold=hold)
         # One pattern and a wide vigilance: one category, which nothing can leave.
-        one = Arkaq(2.0, learning=law, rng=0).learn(env, progress=False)
+        one = Arkaq(2.0, learning=training, rng=0).learn(env, progress=False)
         assert one.art.n_clusters_ == 1
         # Every action is held to the end: each backup but an episode's last stands for `hold`.
         backups = sum(-(-len(actions) // hold) for actions in env.episodes[1:])
