@@ -1,18 +1,18 @@
-"""Exact solving of POMDPs against pomdp-solve and pomdp-py, run in turn.
+"""Exact solving of POMDPs, compared with pomdp-solve and pomdp-py.
 
     python benchmarks/bench_pomdp.py                     the problems of this course
     python benchmarks/bench_pomdp.py a_folder            every .POMDP file in a folder
     POMDP_FILES=a_folder python benchmarks/bench_pomdp.py
 
-A. Cassandra's published problems are not part of this project; they come with his pomdp-solve,
-which is run where it is on the PATH. A round runs ourselves and the peer once, so that a busy
-machine slows both alike, and the ratio is the median of the ratios of the rounds. What takes longer
-than SLOW seconds is run once, what takes longer than PATIENCE is ended.
+A. Cassandra's published problems are not part of this project. They come with his pomdp-solve,
+which is run if it is on the PATH. A round runs our solver and the peer once, so that a busy machine
+slows both alike, and the ratio is the median of the ratios of the rounds. A problem that takes
+longer than SLOW seconds is run once, and one that takes longer than PATIENCE is stopped.
 
-All are solved to 1e-6 without a horizon, except for what LIMITS says. pomdp-solve means by that a
-change from one step to the next, ourselves a proved distance from V*. "apart" is how far the two
-values of the start are. pomdp-py tries all policy trees, from one belief, so only a short horizon
-of the tiger can be compared.
+All problems are solved to 1e-6 without a horizon, except for those in LIMITS. For pomdp-solve this
+is a change from one step to the next, for us a proved distance from V*. "apart" is the difference
+of the two values of the start. pomdp-py tries all policy trees from one belief, so only a short
+horizon of the tiger can be compared.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from arkaq_edu._paths import course_folder
 from arkaq_edu.pomdp import problem, read_pomdp, solve_pomdp
 
 ROUNDS, SLOW, PATIENCE = 7, 5.0, 300.0
-# Horizon and tolerance of published problems that nobody solves to 1e-6 without an end.
+# Horizon and tolerance of published problems that no solver solves to 1e-6 without a horizon.
 LIMITS: dict[str, tuple[int | None, float]] = {
     "4x3.95": (8, 1e-6),
     "network": (None, 1e-3),
@@ -66,7 +66,7 @@ def solve(path: Path) -> None:
     """Time one problem and print its row."""
     pomdp = read_pomdp(path)
     horizon, tol = LIMITS.get(path.stem, (None, 1e-6))
-    solve_pomdp(problem("tiger"), 2)  # compiled, or taken from the cache, before the clock runs
+    solve_pomdp(problem("tiger"), 2)  # compile, or load from the cache, before the clock starts
     rounds, peer_runs = [], SOLVER is not None
     while len(rounds) < ROUNDS and not (rounds and max(rounds[-1]) > SLOW):
         start = time.perf_counter()
@@ -123,7 +123,7 @@ def main(arguments: list[str]) -> None:
         child.join(PATIENCE)
         if child.is_alive():
             child.kill()
-            print(f"{path.stem:14} ended after {PATIENCE:g} s")
+            print(f"{path.stem:14} stopped after {PATIENCE:g} s")
     trees()
 
 

@@ -1,4 +1,4 @@
-"""Any POMDP as a Gymnasium environment: its state is drawn, and only observations are shown."""
+"""Any POMDP as a Gymnasium environment: the state is hidden, the observations are shown."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from arkaq_edu.pomdp import POMDP, problem, read_pomdp
 
 
 class POMDPEnv(gymnasium.Env[np.int64, np.int64]):
-    """Live in a POMDP.
+    """A POMDP as an environment.
 
     ## Action space
 
@@ -21,31 +21,32 @@ class POMDPEnv(gymnasium.Env[np.int64, np.int64]):
 
     ## Observation space
 
-    ``Discrete(Z + 1)``: the observations of the POMDP, and Z, "nothing yet", which `reset` returns:
-    an observation answers an action, and at the start there was none.
+    ``Discrete(Z + 1)``: the observations of the POMDP, and Z for "nothing yet". `reset` returns Z,
+    because an observation follows an action, and at the start there was none.
 
     ## Rewards
 
-    R(s, a), of the state in which the action is taken.
+    R(s, a), where s is the state in which the action is taken.
 
     ## Start
 
-    The state is drawn from the POMDP's `start`; with ``options={"state": s}`` it is `s`.
+    The state is drawn from the `start` of the POMDP. With ``options={"state": s}`` it is `s`.
 
     ## End
 
-    Terminated: the state is one that is never left and earns nothing (the MDP's `ends`). Most
-    POMDPs have none and go on; ``max_episode_steps`` of `gymnasium.make` sets a time limit.
+    The episode is terminated in a state that is never left and where nothing is earned (`ends` of
+    the MDP). Most POMDPs have no such state; ``max_episode_steps`` of `gymnasium.make` sets a time
+    limit.
 
     ## Info
 
-    From ``reset`` and ``step``: the true `state`, which the agent should not look at.
+    ``reset`` and ``step`` return the true `state`. The agent must not use it.
 
     Parameters
     ----------
     pomdp : POMDP, str or path
-        A model; the name of one of the course's own (`arkaq_edu.pomdp.problem`); or a path that
-        ends in ``.pomdp``, whichever its case, of a file in Cassandra's format.
+        A model, the name of one of the course's problems (`arkaq_edu.pomdp.problem`), or the path
+        of a file in Cassandra's format. A path ends in ``.pomdp``, in upper or lower case.
 
     Attributes
     ----------
@@ -82,7 +83,7 @@ class POMDPEnv(gymnasium.Env[np.int64, np.int64]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.int64, dict[str, Any]]:
-        """Start an episode; see the class's Start."""
+        """Start an episode, as the class describes."""
         super().reset(seed=seed)
         states = np.arange(self.pomdp.n_states)
         given = dict(options or {})
@@ -97,7 +98,7 @@ class POMDPEnv(gymnasium.Env[np.int64, np.int64]):
         return np.int64(self.pomdp.n_observations), {"state": self.state}
 
     def step(self, action: np.int64) -> tuple[np.int64, float, bool, bool, dict[str, Any]]:
-        """Take an action; see the class."""
+        """Take an action, as the class describes."""
         s, z, r, terminated = self.pomdp.step(self.state, action, self.np_random)
         self.state = int(s)
         return np.int64(z), float(r), bool(terminated), False, {"state": self.state}

@@ -9,6 +9,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+from arkaq_edu.mdp.model import LARGEST_REWARD
 from arkaq_edu.pomdp.model import POMDP
 
 Floats = NDArray[np.float64]
@@ -341,7 +342,8 @@ class _Reader(_Tokens):
             return self.belief
         what, low, high = "a probability in [0, 1]", 0.0, 1.0
         if letter == "R":
-            what, low, high = "a finite reward", -np.finfo(float).max, np.finfo(float).max
+            low, high = -LARGEST_REWARD, LARGEST_REWARD
+            what = f"a reward in [{low:g}, {high:g}]"
         return self.numbers(self.affordable(letter, shape), what, low, high)
 
     def grow(self, key: list[Any]) -> None:
@@ -362,10 +364,9 @@ class _Reader(_Tokens):
         if "O" in self.axes:
             O = self.normalized("O", self.table["O"], self.given["O"])  # noqa: E741
         R = self.table["R"]
-        with np.errstate(over="ignore", invalid="ignore"):  # POMDP refuses what overflows
-            if R.ndim == 4:
-                R = np.einsum("atz,astz->ast", O, R) if R.shape[3] > 1 else R[..., 0]
-            R = np.einsum("ast,ast->as", T, R) if R.shape[2] > 1 else R[..., 0]
+        if R.ndim == 4:
+            R = np.einsum("atz,astz->ast", O, R) if R.shape[3] > 1 else R[..., 0]
+        R = np.einsum("ast,ast->as", T, R) if R.shape[2] > 1 else R[..., 0]
         if self.costs:
             R = 0 - R
         try:
@@ -379,7 +380,7 @@ class _Reader(_Tokens):
         sums = rows.sum(axis=-1)
         if (wrong := np.abs(sums - 1) > ROUNDING).any():
             where = tuple(int(i) for i in np.argwhere(wrong)[0])
-            row, at = letter, given[where]
+            row, at = letter, int(given[where])
             if letter != "start":
                 a, s = (
                     list(self.index[kind])[i]

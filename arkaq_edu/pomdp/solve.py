@@ -203,7 +203,7 @@ def _improve(pomdp: POMDP, alphas: Floats, points: Floats, enough: float) -> Flo
     alphas = alphas[(points @ alphas.T).argmax(axis=1)]
     values = (points * alphas).sum(axis=1)
     rows = np.arange(len(points))
-    enough = max(enough, 0.1 * ROUNDING * np.abs(alphas).max())  # rounding is no rise
+    enough = max(enough, 0.1 * ROUNDING * np.abs(alphas).max())  # less may be rounding
     while True:
         once, actions, branches = point_backup(pomdp, alphas, points)
         always = once.copy()
