@@ -1,42 +1,25 @@
-"""The thesis's experiments: configuration in, tidy tables out.
+"""The experiments of the thesis: settings in, tidy tables out.
 
-- `streams`: sightings recorded on the field, and what they say of the senses;
-- `segmentation`: the recorded stream cut into categories, and their map;
-- `approach`: training, walking to the ball, and how well it is done;
-- `goal`: training, kicking, and how well it is done: the second problem;
-- `aiming`: where kicks go, kept and laid before any goal: the second problem without its physics;
-- `reproduce`: thesis against here, over many seeds;
-- `kicks`: kicks of a real robot, and simulated ones.
+- `approach` and `goal`: the two problems. The same name means the same in both: `make_task`,
+  `train`, `load_agent`, `greedy`, `at_random`, `planner`, `evaluate`, `record_episode`,
+  `record_sightings`, `load_sightings`, `patterns`, `calibrate`, `study`, `load_study`.
+- `streams`: recorded sightings of either problem, and what they say about the senses;
+- `segmentation`: the recorded sightings of the ball, cut into categories, and their map;
+- `kicks`: kicks of a real robot, and simulated ones;
+- `policies`: policies that play either problem;
+- `runs`: many runs at once, and their summary;
+- `reproduce`: the numbers of the thesis beside those measured here, over many seeds.
 """
 
 import lazy_loader as _lazy
 
 __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
-    submodules=["aiming", "goal", "segmentation"],
+    submodules=["approach", "goal", "kicks", "policies", "reproduce", "runs", "segmentation", "streams"],
     submod_attrs={
-        "approach": [
-            "STARTS",
-            "Walk",
-            "at_random",
-            "evaluate",
-            "greedy",
-            "load_agent",
-            "make_task",
-            "planner",
-            "train",
-            "walk",
-        ],
         "kicks": ["load_kicks", "record_kicks"],
-        "reproduce": [
-            "agent_file",
-            "goal_table",
-            "load_study",
-            "mean_nis",
-            "results",
-            "summary",
-            "thesis_numbers",
-        ],
-        "streams": ["calibrate", "count_centers", "load_sightings", "patterns", "record_sightings"],
+        "reproduce": ["goal_table", "results"],
+        "runs": ["agent_file", "learning_curve", "summary", "thesis_numbers"],
+        "streams": ["count_centers", "mean_nis"],
     },
 )

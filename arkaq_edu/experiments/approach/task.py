@@ -1,0 +1,81 @@
+"""The task, and agents trained on it."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import gymnasium
+
+from arkaq_edu._paths import data_file
+from arkaq_edu.arkaq import Arkaq, TrainingSettings
+
+#: The vigilance of the trained agent, as in figures 5.11 and 5.16.
+VIGILANCE = 0.1
+
+
+def make_task(**options: Any) -> gymnasium.Env:
+    """Return the task as the agent is trained on it: the ball is placed by eq 5.1.
+
+    Examples
+    --------
+    >>> make_task().unwrapped.supervisor.placement
+    'thesis'
+    """
+    return gymnasium.make("arkaq_edu:BallApproach-v0", **{"placement": "thesis", **options})
+
+
+def train(
+    seed: int = 0,
+    vigilance: float | None = None,
+    *,
+    sensing: str = "consistent",
+    learning: TrainingSettings | None = None,
+    checkpoint: str | os.PathLike[str] | None = None,
+    progress: bool = True,
+) -> Arkaq:
+    """Train an agent to walk to the ball.
+
+    Parameters
+    ----------
+    seed : int
+        The agent's seed.
+    vigilance : float, optional
+        See `Arkaq`; by default .1.
+    sensing : {"consistent", "thesis"}
+        The settings of the Kalman filter.
+    learning : TrainingSettings, optional
+        How the agent is trained.
+    checkpoint : path, optional
+        A file that keeps the run; an interrupted run continues from it. See `Arkaq.learn`.
+    progress : bool
+        Whether to show progress bars.
+
+    Returns
+    -------
+    Arkaq
+
+    References
+    ----------
+    Thesis 5.2.1 and 5.2.2, figures 5.6 and 5.15.
+
+    Examples
+    --------
+    >>> brief = TrainingSettings(patterns=200, exploration=500, exploitation=0)
+    >>> train(seed=1, learning=brief, progress=False).cycles >= 500
+    True
+    """
+    vigilance = VIGILANCE if vigilance is None else vigilance
+    agent = Arkaq(vigilance, sensing=sensing, learning=learning, rng=seed)  # type: ignore[arg-type]
+    return agent.learn(make_task(), checkpoint=checkpoint, progress=progress)
+
+
+def load_agent() -> Arkaq:
+    """Return the trained agent that comes with the course: ``train(seed=0)``.
+
+    Examples
+    --------
+    >>> load_agent().vigilance
+    0.1
+    """
+    return Arkaq.load(data_file("ball_approach.npz"))
