@@ -15,9 +15,8 @@ from arkaq_edu._paths import FIRST_PAGE, copy_course, course_folder, in_reposito
 class OneLineErrors(click.Group):
     """A command group that answers bad input with one line and exit status 2.
 
-    Bad input is what click refuses, what the package refuses (``ValueError``) and what the
-    operating system refuses (``OSError``: no such file, no permission). Anything else is a defect
-    and keeps its traceback.
+    Bad input is what click, the package (``ValueError``) or the operating system (``OSError``: no
+    such file, no permission) refuses. Anything else is a defect and keeps its traceback.
 
     Examples
     --------
@@ -28,7 +27,7 @@ class OneLineErrors(click.Group):
     """
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
-        """Run the command line and leave with its exit status."""
+        """Run the command line and exit with its status."""
         try:
             status = super().main(*args, **{**kwargs, "standalone_mode": False})
         except click.Abort:
@@ -53,48 +52,56 @@ def main(context: click.Context) -> None:
 @main.command()
 @click.argument("folder", required=False, type=click.Path(file_okay=False, path_type=Path))
 @click.option("--copy-only", is_flag=True, help="Copy the course and stop.")
-@click.option("--no-browser", is_flag=True, help="Start JupyterLab, but open no browser.")
+@click.option("--no-browser", is_flag=True, help="Start JupyterLab without a browser.")
 def lab(folder: Path | None, copy_only: bool, no_browser: bool) -> None:
     """Open the course in JupyterLab, in a FOLDER of your own.
 
-    The course is copied to FOLDER (default: arkaq-course), and a file that is there already is
-    never written over: run this again in the same folder to go on with your work, or after an
-    upgrade to get what is new. In a clone of the repository, without a FOLDER, the repository's
-    own notebooks are opened where they are.
+    The course is copied to FOLDER (default: arkaq-course). Existing files are never overwritten:
+    run this again in the same folder to continue your work, or after an upgrade to get what is
+    new. In a clone of the repository, without a FOLDER, this opens the repository's own notebooks
+    where they are.
     """
     if folder is None and (copy_only or not in_repository()):
         folder = Path("arkaq-course")
     if folder is not None:
         copied, kept = copy_course(folder)
-        click.echo(f"{folder}: files copied: {len(copied)}, of yours kept: {len(kept)}")
+        click.echo(f"{folder}: files copied: {len(copied)}, your files kept: {len(kept)}")
         for name in kept:
-            click.echo(f"  kept {name} (rename it and run this again to get the course's own)")
+            click.echo(f"  kept {name} (to get the course's own, rename it and run this again)")
     if not copy_only:
         _start_jupyterlab((folder or course_folder()) / "notebooks", no_browser)
 
 
 _seed = click.option("--seed", type=click.IntRange(0), default=0, show_default=True)
-_TASKS = ("approach-ball", "score-goal")
+_TASKS = ("approach", "goal")
 _goal_distance = click.option(
     "--goal-distance",
     type=click.Choice(["near", "far"]),
-    default="near",
-    show_default=True,
-    help="score-goal: where the robot stands.",
+    help="Where the robot stands; applies only to goal.  [default: near]",
 )
 
 
+def _only(task: str, belongs_to: str, flag: str, **option: Any) -> dict[str, Any]:
+    """Return an option if it was given (is not None); refuse it if it belongs to another task."""
+    (value,) = option.values()
+    if value is None:
+        return {}
+    if task != belongs_to:
+        raise click.UsageError(f"{flag} applies only to {belongs_to}")
+    return option
+
+
 @main.command()
-@click.argument("task", type=click.Choice(_TASKS), default="approach-ball")
+@click.argument("task", type=click.Choice(_TASKS), default="approach")
 @click.option(
-    "--vigilance", type=float, help="ART's vigilance.  [default: 0.1; goal: 0.06 near, 0.05 far]"
+    "--vigilance",
+    type=float,
+    help="ART's vigilance.  [default: approach 0.1; goal 0.06 near, 0.05 far]",
 )
 @click.option(
     "--kalman",
     type=click.Choice(["consistent", "thesis"]),
-    default="consistent",
-    show_default=True,
-    help="approach-ball: the Kalman filter's settings.",
+    help="Settings of the Kalman filter; applies only to approach.  [default: consistent]",
 )
 @_goal_distance
 @click.option(
@@ -102,42 +109,46 @@ _goal_distance = click.option(
     type=click.Path(dir_okay=False, writable=True, path_type=Path),
     default="agent.npz",
     show_default=True,
-    help="File for the agent; an interrupted training in it is taken up again.",
+    help="File for the agent. An interrupted training continues from it.",
 )
 @_seed
 def train(
-    task: str, vigilance: float | None, kalman: str, goal_distance: str, out: Path, seed: int
+    task: str,
+    vigilance: float | None,
+    kalman: str | None,
+    goal_distance: str | None,
+    out: Path,
+    seed: int,
 ) -> None:
-    """Teach a robot a TASK, and say how well it does.
+    """Train a robot on a TASK, and say how well it does.
 
-    TASK is approach-ball (the default) or score-goal.
+    TASK is approach (walk to the ball, the default) or goal (score a goal).
     """
     from arkaq_edu import experiments
+    from arkaq_edu.experiments.runs import FRESH_SEEDS
 
-    if task == "score-goal":
-        if kalman != "consistent":
-            raise click.UsageError("--kalman is of approach-ball: the thesis gives none for a goal")
-        goal: Any = experiments.goal
-        agent = goal.train(seed, vigilance, goal_distance, checkpoint=out)
-        shots = goal.shots(experiments.greedy(agent), 200, goal_distance, seed=10_000 + seed)
-        done = f"goals in {shots.is_success.mean():.1%} of 200 fresh kicks"
-    else:
-        if goal_distance != "near":
-            raise click.UsageError("--goal-distance is of score-goal")
-        vigilance = 0.1 if vigilance is None else vigilance
-        agent = experiments.train(seed, vigilance, sensing=kalman, checkpoint=out)
-        judged = experiments.evaluate(experiments.greedy(agent), n=200, seed=10_000 + seed)
-        done = (
-            f"ball reached in {judged.is_success.mean():.1%} of 200 fresh approaches, "
-            f"+50 in {judged.bonus.mean():.1%}"
-        )
-    click.echo(f"{out}: {agent.art.n_clusters_} states; {done}")
+    sensing = _only(task, "approach", "--kalman", sensing=kalman)
+    place = _only(task, "goal", "--goal-distance", goal_distance=goal_distance)
+    problem: Any = getattr(experiments, task)
+    agent = problem.train(seed, vigilance, **sensing, **place, checkpoint=out)
+    table = problem.evaluate(problem.greedy(agent), 200, FRESH_SEEDS + seed, **place)
+    click.echo(f"{out}: {agent.art.n_clusters_} states; {problem.describe(table)}")
 
 
 @main.command()
-@click.argument("agent", default="approach-ball")
-@click.option("--distance", type=float, default=3500.0, show_default=True, help="Ball's, mm.")
-@click.option("--orientation", type=float, default=0.35, show_default=True, help="rad, left > 0")
+@click.argument("agent", default="approach")
+@click.option(
+    "--distance",
+    type=float,
+    help="Distance of the ball (mm); applies only to approach.  [default: 3500]",
+)
+@click.option(
+    "--orientation",
+    type=float,
+    default=0.35,
+    show_default=True,
+    help="Orientation of the ball or goal (rad, left is positive).",
+)
 @_goal_distance
 @click.option(
     "--out",
@@ -147,40 +158,31 @@ def train(
 @_seed
 def watch(
     agent: str,
-    distance: float,
+    distance: float | None,
     orientation: float,
-    goal_distance: str,
+    goal_distance: str | None,
     out: Path | None,
     seed: int,
 ) -> None:
-    """Film a trained agent at work.
+    """Film a trained agent.
 
-    AGENT is a file that `arkaq train` wrote, or approach-ball (the default) or score-goal: then it
-    is the course's own.
+    AGENT is a file written by `arkaq train`. Or it is approach (the default) or goal, for the
+    trained agent that comes with the course.
     """
     from arkaq_edu import experiments
     from arkaq_edu.arkaq import Arkaq
-    from arkaq_edu.figures.drawing.animation import save_shot, save_walk
+    from arkaq_edu.figures.drawing.animation import save_film
 
-    goal: Any = experiments.goal
-    if agent == "approach-ball":
-        who = experiments.load_agent()
-    elif agent == "score-goal":
-        who = goal.load_agent(goal_distance)
-    else:
-        who = Arkaq.load(agent)
-    if who.task == "goal":
-        out = out or Path("shot.gif")
-        shot = goal.shoot(who, orientation, goal_distance, seed)
-        save_shot(shot, out)
-        turns = len(shot.table) - 2
-        click.echo(f"{out}: {'a goal' if shot.is_success else 'a miss'} after {turns} turns")
-    else:
-        out = out or Path("walk.gif")
-        way = experiments.walk(who, distance, orientation, seed)
-        save_walk(way, out)
-        end = "reached the ball" if way.is_success else "did not reach the ball"
-        click.echo(f"{out}: {end} in {len(way.table) - 1} footstep cycles, reward {way.reward:g}")
+    saved = None if agent in _TASKS else Arkaq.load(agent)
+    task = agent if saved is None else saved.task
+    ball = _only(task, "approach", "--distance", distance=distance)
+    place = _only(task, "goal", "--goal-distance", goal_distance=goal_distance)
+    problem: Any = getattr(experiments, task)
+    saved = saved or problem.load_agent(**place)
+    episode = problem.record_episode(saved, orientation=orientation, seed=seed, **ball, **place)
+    out = out or Path({"approach": "walk.gif", "goal": "shot.gif"}[task])
+    save_film(episode, out)
+    click.echo(f"{out}: {episode.outcome}")
 
 
 @main.command()
@@ -197,15 +199,14 @@ def watch(
     type=click.IntRange(1),
     default=500,
     show_default=True,
-    help="Approaches, and kicks, by which each policy is judged.",
+    help="Approaches, and kicks, that judge each policy.",
 )
 @click.option("--jobs", type=int, default=-1, show_default=True, help="Processes; -1: all cores.")
 def reproduce(out: Path, seeds: int, approaches: int, jobs: int) -> None:
     """Repeat the experiments of the thesis, over many seeds.
 
-    Writes index.html, which opens offline, and results.csv. One seed takes about two minutes of
-    one core. The trained agents are kept: call it again after an interruption, and it goes on
-    where it was.
+    Writes index.html, which opens offline, and results.csv. One seed takes about two minutes on
+    one core. The trained agents are saved, so an interrupted run continues when you call it again.
     """
     import matplotlib
 
@@ -217,8 +218,9 @@ def reproduce(out: Path, seeds: int, approaches: int, jobs: int) -> None:
 
     table = results(seeds, approaches, folder=out, jobs=jobs)
     click.echo("drawing the figures")
-    # The stream of the first seed is the one recorded for the course; its agent is in `out`.
-    agent, goal_agent = (Arkaq.load(agent_file(out, kind, 0)) for kind in ("consistent", "near"))
+    # The stream of the first seed is the one recorded for the course; its agents are in `out`.
+    agent = Arkaq.load(agent_file(out, "approach", "consistent", 0))
+    goal_agent = Arkaq.load(agent_file(out, "goal", "near", 0))
     click.echo(write_report(out, table, FIGURES, agent=agent, goal_agent=goal_agent))
 
 

@@ -7,7 +7,7 @@ import time
 import gymnasium
 import numpy as np
 
-from arkaq_edu.experiments import train
+from arkaq_edu.experiments.approach import train
 from arkaq_edu.field.world import CYCLE, SUBSTEPS
 
 CYCLES, ROUNDS = 1000, 7

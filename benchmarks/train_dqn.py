@@ -18,9 +18,9 @@ from stable_baselines3.common.monitor import Monitor
 
 from arkaq_edu.envs import FullState, PixelObservation
 
-TASKS = {"ball": "arkaq_edu:BallApproach-v0", "goal": "arkaq_edu:ScoreGoal-v0"}
-STEPS = {"ball": 40_000, "goal": 30_000}
-GAMMA = {"ball": 0.98, "goal": 0.9}  # some thirty steps to the ball, three to the kick
+TASKS = {"approach": "arkaq_edu:BallApproach-v0", "goal": "arkaq_edu:ScoreGoal-v0"}
+STEPS = {"approach": 40_000, "goal": 30_000}
+GAMMA = {"approach": 0.98, "goal": 0.9}  # some thirty steps to the ball, three to the kick
 
 
 def make(task: str, sees: str) -> gymnasium.Env:

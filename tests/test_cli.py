@@ -4,7 +4,7 @@ import pandas as pd
 import pytest
 from click.testing import CliRunner
 
-from arkaq_edu import cli, experiments
+from arkaq_edu import cli
 from arkaq_edu.arkaq import Arkaq, TrainingSettings
 
 
@@ -19,18 +19,17 @@ def brief(monkeypatch):
     """Make every training short: what is tested is the command, not the learning."""
     from arkaq_edu.experiments import approach, goal
 
-    def short(seed, vigilance=0.1, **options):
+    def short(seed, vigilance=None, **options):
         options["learning"] = TrainingSettings(patterns=300, exploration=500, exploitation=0)
         return long(seed, vigilance, **options)
 
-    def short_goal(seed, vigilance=None, goal_distance="near", **options):
+    def short_goal(seed, vigilance=None, **options):
         options["learning"] = TrainingSettings.goal(patterns=100, exploration=150, exploitation=0)
-        return long_goal(seed, vigilance, goal_distance, **options)
+        return long_goal(seed, vigilance, **options)
 
     long, long_goal = approach.train, goal.train
     monkeypatch.setattr(approach, "train", short)
     monkeypatch.setattr(goal, "train", short_goal)
-    monkeypatch.setattr(experiments, "train", short, raising=False)
 
 
 def test_train_leaves_an_agent_and_says_how_well_it_does(run, brief, tmp_path):
@@ -42,7 +41,7 @@ def test_train_leaves_an_agent_and_says_how_well_it_does(run, brief, tmp_path):
 
 
 def test_train_teaches_to_score_too_and_watch_films_it(run, brief, tmp_path):
-    answer = run("train", "score-goal", "--seed", 2, "--goal-distance", "far", "--out", "mine.npz")
+    answer = run("train", "goal", "--seed", 2, "--goal-distance", "far", "--out", "mine.npz")
     assert answer.exit_code == 0, answer.output
     agent = Arkaq.load(tmp_path / "mine.npz")
     assert (agent.task, agent.seed, agent.vigilance) == ("goal", 2, 0.05)
@@ -53,7 +52,7 @@ def test_train_teaches_to_score_too_and_watch_films_it(run, brief, tmp_path):
 
 
 def test_watch_films_a_shot_of_the_courses_own_agent(run, tmp_path):
-    answer = run("watch", "score-goal", "--orientation", -0.2, "--out", "shot.html")
+    answer = run("watch", "goal", "--orientation", -0.2, "--out", "shot.html")
     assert answer.exit_code == 0, answer.output
     assert "after 1 turn" in answer.output
     page = (tmp_path / "shot.html").read_text()
@@ -81,11 +80,13 @@ def test_watch_films_the_courses_own_agent(run, tmp_path):
         (["train", "--vigilance", "-1"], "vigilance must be"),
         (["train", "--seed", "-1"], "--seed"),
         (["watch", "no.npz"], "No such file"),
-        (["watch", "score-goal", "--orientation", "3"], "orientation must be"),
-        (["watch", "score-goal", "--goal-distance", "middle"], "--goal-distance"),
+        (["watch", "goal", "--orientation", "3"], "orientation must be"),
+        (["watch", "goal", "--goal-distance", "middle"], "--goal-distance"),
         (["train", "dance"], "dance"),
-        (["train", "score-goal", "--kalman", "thesis"], "--kalman is of approach-ball"),
-        (["train", "--goal-distance", "far"], "--goal-distance is of score-goal"),
+        (["train", "goal", "--kalman", "thesis"], "--kalman applies only to approach"),
+        (["train", "--goal-distance", "far"], "--goal-distance applies only to goal"),
+        (["watch", "--goal-distance", "far"], "--goal-distance applies only to goal"),
+        (["watch", "goal", "--distance", "900"], "--distance applies only to approach"),
         (["watch", "--distance", "1e9"], "distance must be"),
         (["watch", "--out", "walk.txt"], ".gif"),
         (["watch", "begun.npz"], "agent must have learned"),

@@ -237,12 +237,12 @@ def test_a_students_work_is_never_written_over(tmp_path):
     first.write_text("my answer")
     answer = run("lab", tmp_path, "--copy-only")
     assert answer.exit_code == 0
-    assert "files copied: 0, of yours kept: 1" in answer.output
+    assert "files copied: 0, your files kept: 1" in answer.output
     assert f"kept notebooks/{_paths.FIRST_PAGE}" in answer.output
     assert first.read_text() == "my answer" and extra.read_text() == "mine"
 
     first.rename(first.with_name("old.ipynb"))
-    assert "files copied: 1, of yours kept: 0" in run("lab", tmp_path, "--copy-only").output
+    assert "files copied: 1, your files kept: 0" in run("lab", tmp_path, "--copy-only").output
     assert first.read_bytes() == whole
 
 

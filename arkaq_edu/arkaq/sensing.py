@@ -93,7 +93,7 @@ class Sensing:
 
         The ball stands still and the robot walks, so there is no velocity to estimate. `B` is
         the mean effect of each action, `Q` the spread around it, and `range_noise` the camera's
-        error. `arkaq_edu.experiments` measures them (`calibrate`), and a test compares.
+        error. `arkaq_edu.experiments.approach.calibrate` measures them, and a test compares.
         """
         return cls(
             (200.0, -0.5),

@@ -108,7 +108,7 @@ class TrainingSettings:
         One kick says little, since even the best misses four times in ten. So the values average
         over more visits (`alpha_least`), and the temperature is higher. No action is held, since
         every turn changes the state. The robot looks around in long periods; see
-        `arkaq_edu.experiments.goal.record_orientations`.
+        `arkaq_edu.experiments.goal.record_sightings`.
 
         Examples
         --------

@@ -15,7 +15,16 @@ import lazy_loader as _lazy
 
 __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
-    submodules=["approach", "goal", "kicks", "policies", "reproduce", "runs", "segmentation", "streams"],
+    submodules=[
+        "approach",
+        "goal",
+        "kicks",
+        "policies",
+        "reproduce",
+        "runs",
+        "segmentation",
+        "streams",
+    ],
     submod_attrs={
         "kicks": ["load_kicks", "record_kicks"],
         "reproduce": ["goal_table", "results"],

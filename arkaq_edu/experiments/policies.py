@@ -25,7 +25,7 @@ def greedy(agent: Arkaq) -> Policy:
     --------
     >>> from arkaq_edu.experiments import approach
     >>> choose = greedy(approach.load_agent())(0)
-    >>> choose(np.array([2000.0, 0.4, 1.0]), {})  # the ball is to the left
+    >>> choose(np.array([1000.0, 0.3, 1.0]), {})  # the ball is to the left
     1
     """
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from arkaq_edu import _checks
 from arkaq_edu.arkaq import Sensing, TrainingSettings
 from arkaq_edu.art.geometry import six_colors, voronoi_cells
-from arkaq_edu.experiments import streams
+from arkaq_edu.experiments import approach
 
 #: The numbers of centers that the thesis prints, by vigilance (figures 5.10 to 5.14).
 THESIS_COUNTS = {0.15: 137, 0.1: 333, 0.075: 519, 0.05: 825, 0.025: 1933}
@@ -47,7 +47,7 @@ def recorded_patterns() -> NDArray[np.float64]:
     >>> patterns.shape, bool(abs(patterns).max() <= 1)
     ((6500, 2), True)
     """
-    return streams.patterns(streams.load_sightings())
+    return approach.patterns(approach.load_sightings())
 
 
 def in_order(patterns: ArrayLike, order: str) -> NDArray[np.float64]:

@@ -74,7 +74,9 @@ def record(env: gymnasium.Env, n: int, seed: int, period: int) -> pd.DataFrame:
     true = [f"true_{name}" for name in names]
     stream = pd.DataFrame(rows, columns=["episode", "cycle", "action", *names, "visible", *true])
     digits = {name: _DIGITS[name.removeprefix("true_")] for name in [*names, *true]}
-    return stream.round(digits).astype(dict.fromkeys(["episode", "cycle", "action", "visible"], int))
+    return stream.round(digits).astype(
+        dict.fromkeys(["episode", "cycle", "action", "visible"], int)
+    )
 
 
 def measurements(stream: pd.DataFrame) -> list[str]:

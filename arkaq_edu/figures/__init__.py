@@ -8,14 +8,11 @@ import lazy_loader as _lazy
 __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
     submodules=[
-        "arkaq", "art", "belief", "drawing", "field",
-        "gallery", "goal", "kalman", "learning", "mdp", "policy", "pomdp",
-        "segmentation", "trajectories",
+        "approach", "arkaq", "art", "belief", "drawing", "field",
+        "gallery", "goal", "kalman", "learning", "mdp", "pomdp", "segmentation",
     ],
     submod_attrs={
-        "drawing.animation": [
-            "MovingShot", "MovingWalk", "animate_shot", "animate_walk", "save_shot", "save_walk",
-        ],
+        "drawing.animation": ["Film", "animate", "save_film"],
         "gallery": ["FIGURES", "draw"],
     },
 )  # fmt: skip

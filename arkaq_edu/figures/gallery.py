@@ -15,6 +15,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from arkaq_edu.figures import (
+    approach,
     arkaq,
     art,
     belief,
@@ -23,67 +24,45 @@ from arkaq_edu.figures import (
     kalman,
     learning,
     mdp,
-    policy,
     pomdp,
     segmentation,
-    trajectories,
 )
+from arkaq_edu.figures.drawing.plot import Plot
 
-_ROOMS = (
-    arkaq,
-    learning,
-    mdp,
-    art,
-    kalman,
-    field,
-    segmentation,
-    policy,
-    trajectories,
-    goal,
-    belief,
-    pomdp,
-)
-
-
-def _number(name: str) -> tuple[int, ...]:
-    return tuple(int(part) for part in name.split("_")[1:])
-
-
-_DRAWN = {
-    _number(name): function
-    for room in _ROOMS
-    for name, function in vars(room).items()
+_CHAPTERS = (learning, mdp, belief, pomdp, kalman, art, segmentation, field, arkaq, approach, goal)
+_DRAWN: dict[str, Callable[..., Any]] = approach.TRAJECTORIES | {
+    name.removeprefix("figure_").replace("_", "."): function
+    for chapter in _CHAPTERS
+    for name, function in vars(chapter).items()
     if name.startswith("figure_")
 }
 
-#: The function of every figure there is, in the thesis's order.
-FIGURES: dict[str, Callable[..., Any]] = {
-    ".".join(map(str, number)): _DRAWN[number] for number in sorted(_DRAWN)
-}
+#: The function that draws each figure, in the thesis's order.
+FIGURES = dict(sorted(_DRAWN.items(), key=lambda item: [int(n) for n in item[0].split(".")]))
 
 
-def draw(number: str, path: str | os.PathLike[str] | None = None, **options: Any) -> Any:
+def draw(number: str, path: str | os.PathLike[str] | None = None, **options: Any) -> Plot:
     """Draw a figure of the thesis by its number.
 
     Parameters
     ----------
     number : str
-        As the thesis counts, for example "5.10".
+        The number in the thesis, for example "5.10".
     path : path, optional
-        Where to keep the picture; its ending says in what form (.png, .svg, .pdf). Where it is
-        None, the figure is drawn for a notebook.
+        A file for the picture; its ending sets the format (.png, .svg, .pdf). By default, the
+        figure is drawn for a notebook.
     **options
-        Passed to the figure's function.
+        Passed to the function of the figure.
 
     Returns
     -------
-    tuple
-        What the figure's function returns: the axes it drew on (``ax``), and its artists by name.
+    Plot
+        The axes (``ax``), and what was drawn, by name.
 
     Raises
     ------
     ValueError
-        If there is no such figure, or its ending is unknown.
+        If there is no such figure, or no such format.
 
     Examples
     --------

@@ -1,6 +1,6 @@
 """Figures 5.35 to 5.37 and 5.39 to 5.41: the goal problem.
 
-Its states lie on a line, the orientation of the goal: left of the robot is left in the picture.
+Its states lie on a line, the orientation of the goal. Left of the robot is left in the picture.
 
 References
 ----------
@@ -16,157 +16,88 @@ Examples
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.collections import FillBetweenPolyCollection, PolyCollection
-from matplotlib.lines import Line2D
-from matplotlib.patches import StepPatch
+from matplotlib.collections import PolyCollection
 from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu import _checks
-from arkaq_edu.arkaq import Arkaq, Sensing, TrainingSettings
-from arkaq_edu.art import EuclideanART
+from arkaq_edu.arkaq import Arkaq, Sensing
 from arkaq_edu.envs.score_goal import ACTIONS
+from arkaq_edu.experiments import goal, thesis_numbers
+from arkaq_edu.experiments.goal.task import Distance
+from arkaq_edu.figures.approach import MARKERS, policy_title
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.figures.policy import MARKERS
+from arkaq_edu.figures.drawing.plot import Plot
 
-#: The numbers of centers the thesis prints, by vigilance (figures 5.35 to 5.37).
-THESIS_COUNTS = {0.075: 9, 0.06: 13, 0.05: 18}
-
-#: The shares of kicks that score, per cent, as the thesis says them of figure 5.40.
-THESIS_RATES = {"ARKAQ": 60, "random actions": 35}
-
-#: The mark of each action: where it turns the robot, or the ball.
+#: The color and the mark of each action: where it turns the robot, or the ball.
 MARKS = {
     "turn left": ("left", MARKERS["left"]),
     "turn right": ("right", MARKERS["right"]),
     "kick": ("kick", "o"),
 }
-_SENSING = Sensing.goal()
-_STRIP = 0.3
-
-
-class LinePlot(NamedTuple):
-    """What `plot_line` drew: how often each orientation was seen, the cells, and the centers."""
-
-    ax: Axes
-    seen: StepPatch
-    cells: PolyCollection
-    centers: Line2D
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return self.ax.get_title(loc="left") or f"{len(self.cells.get_paths())} centers"
-
-
-class LinePolicyPlot(NamedTuple):
-    """What `figure_5_39` drew: the states' cells, and for each action its marks."""
-
-    ax: Axes
-    cells: PolyCollection
-    marks: dict[str, Line2D]
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return self.ax.get_title(loc="left")
-
-
-class ScoresPlot(NamedTuple):
-    """What `plot_scores` drew: mean and band of who kicks, the best there is, and the thesis."""
-
-    ax: Axes
-    means: dict[str, Line2D]
-    bands: dict[str, FillBetweenPolyCollection]
-    best: Line2D
-    thesis: Line2D | None
-
-    def __repr__(self) -> str:
-        """Return what the picture states."""
-        return self.ax.get_title(loc="left")
-
-
-def line_cells(centers: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return centers from left to right (rad), and the ends of their cells.
-
-    Parameters
-    ----------
-    centers : array_like, shape (S, 1)
-        Centers as scaled orientations.
-
-    Returns
-    -------
-    middles : array, shape (S,)
-        Orientations of the centers (rad), the leftmost, so the greatest, first.
-    ends : array, shape (S + 1,)
-        Where the cells meet, and where the outer ones end: at .5 and -.5.
-
-    Examples
-    --------
-    >>> line_cells([[-0.4], [0.8], [0.0]])
-    (array([ 0.4,  0. , -0.2]), array([ 0.5,  0.2, -0.1, -0.5]))
-    """
-    centers = _checks.array("centers", centers, (None, 1))
-    middles = np.sort(_SENSING.unscale(centers).ravel())[::-1]
-    between = (middles[1:] + middles[:-1]) / 2
-    return middles, np.concatenate([_SENSING.high, between, _SENSING.low])
+_STRIP = 0.3  # height of the cells in the picture
+_TOP = {"near": 90, "far": 55}  # of the picture, in goals in 100 kicks
 
 
 def plot_line(
     centers: ArrayLike, patterns: ArrayLike, ax: Axes | None = None, *, title: str = ""
-) -> LinePlot:
-    """Draw centers and their cells on a line, under how often each orientation was seen.
+) -> Plot:
+    """Draw centers and their cells on a line, below how often each orientation was seen.
 
     Parameters
     ----------
     centers : array_like, shape (S, 1)
         Centers as scaled orientations.
     patterns : array_like, shape (n, 1)
-        The stream that founded them.
+        The stream that the centers come from.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; by default on new axes.
     title : str
-        What the picture states.
+        What the picture shows.
 
     Returns
     -------
-    LinePlot
+    Plot
+        ``seen`` (a histogram), ``cells`` and ``centers``.
     """
     patterns = _checks.array("patterns", patterns, (None, 1))
-    middles, ends = line_cells(centers)
+    middles, ends = goal.cells(centers)
     ax = _line_axes(ax, title)
-    colors = [style.CELLS[2 * (i % 2)] for i in range(len(middles))]
-    area = style.cells(_strips(ends), colors, ax)
+    area = _draw_cells(ends, [style.CELLS[2 * (i % 2)] for i in range(len(middles))], ax)
     (dots,) = ax.plot(
         middles, np.full(len(middles), _STRIP / 2), "o", color=style.INK, ms=5, clip_on=False
     )
-    inside = _SENSING.unscale(patterns[np.abs(patterns) < 1])  # what was clipped is anywhere
+    # A pattern at the end of the interval was clipped: the goal is somewhere beyond.
+    inside = Sensing.goal().unscale(patterns[np.abs(patterns) < 1])
     counts, edges = np.histogram(inside, bins=100, range=(-0.5, 0.5))
     tops = _STRIP + 0.05 + (0.85 - _STRIP) * counts / max(1, counts.max())
     seen = ax.stairs(tops, edges, baseline=_STRIP + 0.05, fill=True, color=style.QUIET)
     ax.text(0.49, 0.98, "how often seen", va="top", color=style.QUIET, fontsize="small")
-    return LinePlot(ax, seen, area, dots)
+    return Plot(ax, f"{len(middles)} centers", seen=seen, cells=area, centers=dots)
 
 
 def plot_segmentation(
     vigilance: float, ax: Axes | None = None, *, patterns: ArrayLike | None = None
-) -> LinePlot:
-    """Segment a stream of orientations and draw the centers, with the thesis's count and ours.
+) -> Plot:
+    """Draw the centers of a stream, with their number in the thesis and here.
 
     Parameters
     ----------
     vigilance : float
-        Distance, between scaled orientations, from which on a pattern founds a center.
+        A pattern farther than this from all centers becomes a new center.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; by default on new axes.
     patterns : array_like, shape (n, 1), optional
-        Scaled orientations in their order; the recorded stream where it is None.
+        Scaled orientations in their order; by default the recorded stream.
 
     Returns
     -------
-    LinePlot
+    Plot
+        See `plot_line`.
 
     Examples
     --------
@@ -174,46 +105,43 @@ def plot_segmentation(
     >>> plot_segmentation(0.3, Figure().subplots(), patterns=[[0.0], [0.25], [1.0]])
     2 centers at vigilance 0.3
     """
-    if patterns is None:
-        from arkaq_edu.experiments import goal  # brings the whole field with it
-
-        patterns = goal.patterns(goal.load_orientations())
-    rate = TrainingSettings.goal().learning_rate
-    centers = EuclideanART(vigilance, rate).fit(patterns).cluster_centers_
-    n, printed = len(centers), THESIS_COUNTS.get(vigilance)
+    patterns = goal.patterns(goal.load_sightings()) if patterns is None else patterns
+    centers = goal.find_centers(vigilance, patterns)
+    n, printed = len(centers), thesis_numbers().get(f"goal centers, vigilance {vigilance:g}")
     beside = "" if printed is None else f", the thesis printed {printed}"
     title = f"{n} center{'s' if n > 1 else ''} at vigilance {vigilance:g}{beside}"
     return plot_line(centers, patterns, ax, title=title)
 
 
-def figure_5_35(ax: Axes | None = None, **options: Any) -> LinePlot:
+def figure_5_35(ax: Axes | None = None, **options: Any) -> Plot:
     """Draw figure 5.35, the centers at vigilance 0.075; see `plot_segmentation`."""
     return plot_segmentation(0.075, ax, **options)
 
 
-def figure_5_36(ax: Axes | None = None, **options: Any) -> LinePlot:
+def figure_5_36(ax: Axes | None = None, **options: Any) -> Plot:
     """Draw figure 5.36, the centers at vigilance 0.06; see `plot_segmentation`."""
     return plot_segmentation(0.06, ax, **options)
 
 
-def figure_5_37(ax: Axes | None = None, **options: Any) -> LinePlot:
+def figure_5_37(ax: Axes | None = None, **options: Any) -> Plot:
     """Draw figure 5.37, the centers at vigilance 0.05; see `plot_segmentation`."""
     return plot_segmentation(0.05, ax, **options)
 
 
-def figure_5_39(ax: Axes | None = None, *, goal_agent: Arkaq | None = None) -> LinePolicyPlot:
+def figure_5_39(ax: Axes | None = None, *, goal_agent: Arkaq | None = None) -> Plot:
     """Draw figure 5.39, the greedy action of each orientation.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; by default on new axes.
     goal_agent : Arkaq, optional
-        An agent that has learned to score; the course's own where it is None.
+        A trained agent; by default the one that comes with the course.
 
     Returns
     -------
-    LinePolicyPlot
+    Plot
+        ``cells``, and ``marks`` by action.
 
     Raises
     ------
@@ -226,97 +154,86 @@ def figure_5_39(ax: Axes | None = None, *, goal_agent: Arkaq | None = None) -> L
     >>> sorted(figure_5_39(Figure().subplots()).marks)
     ['kick', 'turn left', 'turn right']
     """
-    if goal_agent is None:
-        from arkaq_edu.experiments import goal
-
-        goal_agent = goal.load_agent()
-    if goal_agent.q is None or goal_agent.task != "goal":
+    agent = goal.load_agent() if goal_agent is None else goal_agent
+    if agent.q is None or agent.task != "goal":
         raise ValueError("goal_agent must have learned to score")
-    middles, ends = line_cells(goal_agent.art.cluster_centers_)
-    order = np.argsort(-goal_agent.art.cluster_centers_.ravel())
-    chosen = goal_agent.q.Q.argmax(axis=1)[order]
-    parts = ", ".join(f"{(chosen == i).sum()} {action}" for i, action in enumerate(ACTIONS))
-    printed = THESIS_COUNTS.get(goal_agent.vigilance)
-    beside = "" if printed is None else f" (thesis {printed})"
-    title = f"{len(chosen)} states{beside} at vigilance {goal_agent.vigilance:g}: {parts}"
-    ax = _line_axes(ax, title)
-    colors = [style.ACTIONS[MARKS[ACTIONS[i]][0]] for i in chosen]
-    # The two last digits are the opacity: a quarter.
-    area = style.cells(_strips(ends), [color + "40" for color in colors], ax)
+    middles, ends = goal.cells(agent.art.cluster_centers_)
+    order = np.argsort(-agent.art.cluster_centers_.ravel())
+    chosen = agent.q.Q.argmax(axis=1)[order]
+    ax = _line_axes(ax, policy_title(agent, chosen, ACTIONS, "goal centers, vigilance"))
+    # The last two digits are the opacity: a quarter.
+    shades = [style.ACTIONS[MARKS[ACTIONS[i]][0]] + "40" for i in chosen]
+    area = _draw_cells(ends, shades, ax)
     marks = {}
     for number, action in enumerate(ACTIONS):
-        name, marker = MARKS[action]
+        color, marker = MARKS[action]
         places = middles[chosen == number]
         (marks[action],) = ax.plot(
             places, np.full(len(places), _STRIP / 2), linestyle="none", marker=marker,
-            markersize=10, color=style.ACTIONS[name], markeredgecolor=style.INK,
+            markersize=10, color=style.ACTIONS[color], markeredgecolor=style.INK,
             markeredgewidth=0.4, clip_on=False, label=action,
         )  # fmt: skip
     ax.set_ylim(0, 1.4 * _STRIP)
     ax.legend(loc="upper center", ncols=3, frameon=False)
-    return LinePolicyPlot(ax, area, marks)
+    return Plot(ax, cells=area, marks=marks)
 
 
 def plot_scores(
-    goal_distance: str, ax: Axes | None = None, *, study: pd.DataFrame | None = None
-) -> ScoresPlot:
-    """Draw goals in a hundred kicks against kicks: who learns, who does not, the best there is.
+    goal_distance: Distance, ax: Axes | None = None, *, study: pd.DataFrame | None = None
+) -> Plot:
+    """Draw goals in a hundred kicks against kicks: learning, at random, and the best policy.
 
     Parameters
     ----------
     goal_distance : {"near", "far"}
         Where the robot stands.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; fresh axes where it is None.
+        Where to draw; by default on new axes.
     study : DataFrame, optional
-        As `arkaq_edu.experiments.goal.study` returns it; the course's own where it is None.
+        See `arkaq_edu.experiments.goal.study`; by default the one that comes with the course.
 
     Returns
     -------
-    ScoresPlot
-        ``means`` and ``bands`` (one standard deviation over the seeds) of ARKAQ and of random
-        actions, ``means`` of the oracle; ``best``, what no policy can exceed but by luck;
-        ``thesis``, hollow, near only.
+    Plot
+        ``means`` of ARKAQ, random actions and the oracle; ``bands`` of the first two (one
+        standard deviation over the seeds); ``best``, which no policy exceeds but by luck;
+        ``thesis`` (hollow, only near, else None).
     """
-    from arkaq_edu.experiments import goal
-
-    table = goal.load_study() if study is None else study
-    table = table[table.goal_distance == goal_distance]
-    rate = table.assign(rate=100 * table.goals / goal.BLOCK).groupby(["who", "kicks"]).rate
-    mean, std = rate.mean(), rate.std(ddof=0)
+    mean, std = goal.mean_curves(goal.load_study() if study is None else study, goal_distance)
     ax = style.axes(ax, xlabel="kicks", ylabel="goals in 100 kicks")
-    looks = {"ARKAQ": style.OURS, "random actions": style.ACTIONS["left"]}
+    colors = {"ARKAQ": style.OURS, "random actions": style.ACTIONS["left"]}
     means, bands = {}, {}
-    for who, color in looks.items():
+    for who, color in colors.items():
         kicks = mean[who].index
         means[who], bands[who] = style.band(kicks, mean[who], std[who], ax, color=color, label=who)
     end = float(mean["ARKAQ"].index[-1])
-    straight = mean["oracle"].mean()
+    oracle, limit = mean["oracle"].mean(), 100 * goal.best_policy(goal_distance).goals
     (means["oracle"],) = ax.plot(
-        [0, end], [straight, straight], "--", color=style.QUIET, lw=1.2, label="oracle"
+        [0, end], [oracle, oracle], "--", color=style.QUIET, lw=1.2, label="oracle"
     )
-    limit = 100 * goal.best_policy(goal_distance).goals  # type: ignore[arg-type]
     (best,) = ax.plot([0, end], [limit, limit], ":", color=style.INK, label="best there is")
     thesis = None
     if goal_distance == "near":
+        printed = [thesis_numbers()[f"goals (%), near, {who}"] for who in colors]
         thesis = style.measurements(
-            [end] * 2, list(THESIS_RATES.values()), ax, markersize=8, clip_on=False, label="thesis"
+            [end] * 2, printed, ax, markersize=8, clip_on=False, label="thesis"
         )
-    first = {who: mean[who].iloc[:2].mean() for who in looks}
-    last = {who: mean[who].iloc[-4:].mean() for who in looks}
-    said = [f"{who} from {first[who]:.0f} to {last[who]:.0f} %" for who in looks]
+    said = [
+        f"{who} from {mean[who].iloc[:2].mean():.0f} to {mean[who].iloc[-4:].mean():.0f} %"
+        for who in colors
+    ]
     ax.set_title(f"{goal_distance}: {', '.join(said)}", loc="left", fontsize="medium")
-    ax.set(xlim=(0, end), ylim=(0, 90 if goal_distance == "near" else 55))
+    ax.set(xlim=(0, end), ylim=(0, _TOP[goal_distance]))
     ax.legend(loc="upper left", ncols=3, frameon=False, fontsize="small")
-    return ScoresPlot(ax, means, bands, best, thesis)
+    return Plot(ax, means=means, bands=bands, best=best, thesis=thesis)
 
 
-def figure_5_40(ax: Axes | None = None, **options: Any) -> ScoresPlot:
+def figure_5_40(ax: Axes | None = None, **options: Any) -> Plot:
     """Draw figure 5.40, goals against kicks from near; see `plot_scores`."""
     return plot_scores("near", ax, **options)
 
 
-def figure_5_41(ax: Axes | None = None, **options: Any) -> ScoresPlot:
+def figure_5_41(ax: Axes | None = None, **options: Any) -> Plot:
     """Draw figure 5.41, goals against kicks from far, not straight; see `plot_scores`."""
     return plot_scores("far", ax, **options)
 
@@ -328,5 +245,6 @@ def _line_axes(ax: Axes | None, title: str) -> Axes:
     return ax
 
 
-def _strips(ends: NDArray[np.float64]) -> list[NDArray[np.float64]]:
-    return [np.array([(a, 0.0), (b, 0.0), (b, _STRIP), (a, _STRIP)]) for a, b in pairwise(ends)]
+def _draw_cells(ends: NDArray[np.float64], colors: list[str], ax: Axes) -> PolyCollection:
+    strips = [np.array([(a, 0.0), (b, 0.0), (b, _STRIP), (a, _STRIP)]) for a, b in pairwise(ends)]
+    return style.cells(strips, colors, ax)

@@ -39,8 +39,8 @@ figcaption { color: #555; font-size: .9rem; }
 <p>$summary</p>
 <h2>Numbers</h2>
 $table
-<p>Mean, lowest and highest over the seeds. The way walked is that of the
-walks which arrived. A dash: the thesis prints no such number.</p>
+<p>Mean, lowest and highest over the seeds. "Way walked" counts only walks
+that reached the ball. A dash means that the thesis prints no such number.</p>
 <h2>Figures</h2>
 <div class="figures">
 $figures
@@ -61,19 +61,19 @@ def write_report(
     figures: Mapping[str, Callable[..., object]],
     **options: object,
 ) -> Path:
-    """Write ``results.csv`` and ``index.html``, each whole or not at all.
+    """Write ``results.csv`` and ``index.html``, each completely or not at all.
 
     Parameters
     ----------
     folder : path
-        Where to; made if it does not exist.
+        Made if it does not exist.
     results : DataFrame
-        Columns quantity, thesis, mean, low, high, seeds, as `experiments.results` returns it.
+        Columns quantity, thesis, mean, low, high, seeds; see `arkaq_edu.experiments.results`.
     figures : mapping of str to function
-        For each figure's number a function that draws it on the current axes; the first line of
-        its docstring becomes the caption.
+        The function that draws each figure, by number. The first line of its docstring becomes
+        the caption.
     **options
-        Passed to every figure that takes an argument of that name, such as ``agent``.
+        Passed to every figure that has a parameter of that name, such as ``agent``.
 
     Returns
     -------
@@ -99,7 +99,7 @@ def write_report(
         text[name] = [_number(value) for value in results[name]]
     page = _PAGE.substitute(
         summary=f"Every quantity was measured with {seeds} seed{'s' if seeds > 1 else ''}; "
-        "the figures show what came of the first, and 5.40 and 5.41 the course's own study.",
+        "the figures show the first seed, except 5.40 and 5.41, which show the course's own study.",
         table=text.to_html(index=False, border=0),
         figures="\n".join(_figure(number, draw, options) for number, draw in figures.items()),
         version=__version__,
@@ -109,7 +109,7 @@ def write_report(
 
 
 def _number(value: float) -> str:
-    """Write a number with three digits at least, and no more decimals than it deserves."""
+    """Return a number with at least three digits."""
     if pd.isna(value):
         return "\N{EN DASH}"
     return f"{value:.0f}" if abs(value) >= 100 or value == round(value) else f"{value:#.3g}"

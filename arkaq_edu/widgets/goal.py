@@ -1,4 +1,4 @@
-"""The scoring explorer: how far away, how steady a kick, how fine a map; and what then scores."""
+"""The scoring explorer: what scores, by distance, spread of the kick, and number of states."""
 
 from __future__ import annotations
 
@@ -10,12 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu import _checks
-from arkaq_edu.arkaq import Sensing, TrainingSettings
-from arkaq_edu.art import EuclideanART
+from arkaq_edu.arkaq import Sensing
 from arkaq_edu.envs.score_goal import STARTS
-from arkaq_edu.experiments import aiming
-from arkaq_edu.experiments.goal import load_orientations
-from arkaq_edu.experiments.goal import patterns as recorded_patterns
+from arkaq_edu.experiments import goal
+from arkaq_edu.experiments.goal import aiming, kicks, planning
 from arkaq_edu.field import pitch
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.widgets.explorer import Explorer, wide
@@ -37,24 +35,24 @@ _FOOT, _TOP = -13.0, -3.0  # of the strip of states, in per cent of goals
 
 
 def scoring_explorer(patterns: ArrayLike | None = None) -> Explorer:
-    """Return distance, steadiness of the kick and vigilance on sliders, above what scores.
+    """Return sliders for distance, spread of the kick and vigilance, above what scores.
 
-    The picture does not ask the physics at every stop. It takes 500 kicks up an open field, draws
-    them together or apart, lays them before the goal, and lets value iteration find the policy to
-    which Q-learning would come; see `arkaq_edu.experiments.aiming`. At the default the physics
-    itself gives the same, within a few per cent.
+    The picture does not need the physics. It takes 500 kicks on an open field, draws them together
+    or apart, places them before the goal, and finds by value iteration the policy that Q-learning
+    would find; see `arkaq_edu.experiments.goal.aiming`. At the default, the physics gives the same
+    within a few per cent.
 
     Parameters
     ----------
     patterns : array_like, shape (n, 1), optional
-        Scaled orientations in the order in which they were recorded; the course's recorded stream
-        where it is None.
+        Scaled orientations in the order in which they were recorded; by default the recorded
+        stream.
 
     Returns
     -------
     Explorer
-        Its ``controls``: distance (mm), spread (of the kick; 1 is the real robot's, with 0 every
-        kick is the same) and vigilance.
+        Its ``controls``: distance (mm), spread (of the kick: 1 is that of the real robot, with 0
+        every kick is the same) and vigilance.
 
     References
     ----------
@@ -67,7 +65,7 @@ def scoring_explorer(patterns: ArrayLike | None = None) -> Explorer:
     >>> explorer
     1,850 mm, spread 0, 5 states at vigilance 0.06: 100 % score; the best 100 %, random 45 %
     """
-    patterns = recorded_patterns(load_orientations()) if patterns is None else patterns
+    patterns = goal.patterns(goal.load_sightings()) if patterns is None else patterns
     stream = _checks.array("patterns", patterns, (None, 1))
     look = wide("8em")
     return Explorer(
@@ -97,9 +95,9 @@ def draw(
     patterns : array_like, shape (n, 1)
         Scaled orientations, as recorded.
     distance : float
-        Of the robot from the goal line (mm).
+        Distance of the robot from the goal line (mm).
     spread : float
-        Of the kick; 1 is the real robot's.
+        Spread of the kick: 1 is that of the real robot.
     vigilance : float
         In (0, 2].
 
@@ -107,32 +105,33 @@ def draw(
     -------
     Scene
     """
-    eta = TrainingSettings.goal().learning_rate
-    found = EuclideanART(vigilance, eta).fit(patterns).cluster_centers_
-    centers = np.sort(found, axis=0)
-    ways = aiming.spread_out(aiming.ball_paths(), spread)
-    scores = aiming.chances(ways, distance)
-    actions = aiming.plan(scores, centers)
-    prospects = aiming.prospects(scores, actions[aiming.category(centers, aiming.GRID)])
-    mean, best, random = (f"{100 * share:.0f} %" for share in prospects.over_starts())
+    centers = goal.find_centers(vigilance, patterns)
+    paths = kicks.spread_out(kicks.ball_paths(), spread)
+    chance = aiming.chance_on_grid(paths, distance)
+    actions = aiming.plan(chance, centers)
+    goals = aiming.probabilities(chance, centers, actions)
+    mean = {
+        who: f"{100 * planning.mean_over_starts(values, STARTS['near']):.0f} %"
+        for who, values in goals.items()
+    }
     states = f"{len(centers)} state{'s' if len(centers) > 1 else ''} at vigilance {vigilance:g}"
     fact = (
-        f"{distance:,.0f} mm, spread {spread:.2g}, {states}: {mean} score; "
-        f"the best {best}, random {random}"
+        f"{distance:,.0f} mm, spread {spread:.2g}, {states}: {mean['learned']} score; "
+        f"the best {mean['best']}, random {mean['random']}"
     )
-    field = _field(ways, distance, aiming.last_aims(centers, actions, _SHOWN))
-    return Scene(fact, [field, _shares(scores, prospects, centers, actions)])
+    field = _field(paths, distance, aiming.last_aims(centers, actions, _SHOWN))
+    return Scene(fact, [field, _shares(goals | {"at once": chance}, centers, actions)])
 
 
-def _field(ways: NDArray[np.float64], distance: float, aims: NDArray[np.float64]) -> Panel:
-    """Draw the kicks that the policy makes, from above; the goal is at the top."""
-    laid = aiming.on_the_field(ways[: len(aims)], distance, aims)
-    scored = aiming.is_goal(laid)
+def _field(paths: NDArray[np.float64], distance: float, aims: NDArray[np.float64]) -> Panel:
+    """Draw the kicks of the policy from above, with the goal at the top."""
+    placed = kicks.on_the_field(paths[: len(aims)], distance, aims)
+    scored = kicks.is_goal(placed)
     post, back = pitch.GOAL_WIDTH / 2, _GOAL_DEPTH
     layers: list[Layer] = [
         Line(_ACROSS, (0.0, 0.0), style.QUIET, 1.0, dashed=True),
-        _fan(laid[~scored], style.QUIET, 0.5),
-        _fan(np.clip(laid[scored], (-np.inf, -post), (back, post)), style.OURS, 0.9),
+        _fan(placed[~scored], style.QUIET, 0.5),
+        _fan(np.clip(placed[scored], (-np.inf, -post), (back, post)), style.OURS, 0.9),
         Line([post, post, -post, -post], [0.0, back, back, 0.0], style.INK, 3.0),
         Points([0.0], [-distance], 6.0),
         Text(-110.0, -distance - 25.0, f"{len(aims)} kicks, {scored.sum()} goals"),
@@ -140,43 +139,42 @@ def _field(ways: NDArray[np.float64], distance: float, aims: NDArray[np.float64]
     return Panel("", "", _ACROSS, _DEPTH, layers, width=0.62, bare=True)
 
 
-def _fan(laid: NDArray[np.float64], color: str, width: float) -> Line:
-    lifted = np.pad(laid, ((0, 0), (0, 1), (0, 0)), constant_values=np.nan).reshape(-1, 2)
+def _fan(placed: NDArray[np.float64], color: str, width: float) -> Line:
+    # A NaN after each path lifts the pen.
+    lifted = np.pad(placed, ((0, 0), (0, 1), (0, 0)), constant_values=np.nan).reshape(-1, 2)
     return Line(lifted[:, 1], lifted[:, 0], color, width)
 
 
 def _shares(
-    scores: NDArray[np.float64],
-    prospects: aiming.Prospects,
+    goals: dict[str, NDArray[np.float64]],
     centers: NDArray[np.float64],
     actions: NDArray[np.intp],
 ) -> Panel:
-    """Draw the share of goals by the orientation at the start, and what the states do."""
-    middles = Sensing.goal().unscale(centers).ravel()
+    """Draw the share of goals by the orientation at the start, and the action of each state."""
     low, high = Sensing.goal().low[0], Sensing.goal().high[0]
-    edges = np.concatenate([[low], (middles[1:] + middles[:-1]) / 2, [high]])
+    ends = goal.cells(centers)[1][::-1]
     strip = [
         np.array([[left, _FOOT], [right, _FOOT], [right, _TOP], [left, _TOP]])
-        for left, right in pairwise(edges)
+        for left, right in pairwise(ends)
     ]
     layers: list[Layer] = [
         Cells(strip, actions.tolist(), (low, high, _FOOT, _TOP), _COLORS, border=1.0)
     ]
     for polygon, action in zip(strip, actions, strict=True):
-        if np.ptp(polygon[:, 0]) > 0.03:  # else there is no room
+        if np.ptp(polygon[:, 0]) > 0.03:  # enough room for the sign
             x, y = polygon.mean(axis=0)
             layers.append(Text(x, y, _SIGNS[action], _SIGN_COLORS[action], "center"))
     curves = (
-        ("the best there is", prospects.best, style.INK, True),
-        ("this map's policy", prospects.learned, style.OURS, False),
-        ("kick at once", scores, style.INK, False),
-        ("random actions", prospects.random, style.QUIET, True),
+        ("the best there is", goals["best"], style.INK, True),
+        ("this map's policy", goals["learned"], style.OURS, False),
+        ("kick at once", goals["at once"], style.INK, False),
+        ("random actions", goals["random"], style.QUIET, True),
     )
-    seen = (low <= aiming.GRID) & (high >= aiming.GRID)
+    seen = (low <= planning.ORIENTATIONS) & (high >= planning.ORIENTATIONS)
     for i, (name, values, color, dashed) in enumerate(curves):
         left, up = (0.49 if i % 2 == 0 else 0.02), (124.0 if i < 2 else 113.0)
         layers += [
-            Line(aiming.GRID[seen], 100 * values[seen], color, 2.0, dashed),
+            Line(planning.ORIENTATIONS[seen], 100 * values[seen], color, 2.0, dashed),
             Line([left, left - 0.07], [up, up], color, 2.0, dashed),
             Text(left - 0.09, up, name, color),
         ]

@@ -10,35 +10,28 @@ import pytest
 from arkaq_edu._paths import data_file
 from arkaq_edu.arkaq import Arkaq, Sensing, TrainingSettings
 from arkaq_edu.experiments import (
-    at_random,
-    calibrate,
+    approach,
     count_centers,
-    evaluate,
-    greedy,
-    load_agent,
-    load_sightings,
+    goal,
+    learning_curve,
     mean_nis,
-    patterns,
-    planner,
-    record_sightings,
     results,
     summary,
     thesis_numbers,
-    train,
-    walk,
 )
+from arkaq_edu.experiments.approach import calibrate, evaluate, planner, record_sightings, train
 
 BRIEF = TrainingSettings(patterns=300, exploration=1500, exploitation=500)
 
 
 @pytest.fixture(scope="module")
 def stream():
-    return load_sightings()
+    return approach.load_sightings()
 
 
 @pytest.fixture(scope="module")
 def agent():
-    return load_agent()
+    return approach.load_agent()
 
 
 def test_the_recorded_stream_is_what_its_recipe_records(stream):
@@ -51,7 +44,7 @@ def test_the_readme_states_the_hash_of_the_stream():
 
 
 def test_one_stream_and_one_eta_give_all_five_counts_of_the_thesis(stream):
-    counts = count_centers(patterns(stream))
+    counts = count_centers(approach.patterns(stream))
     printed = thesis_numbers()
     assert len(counts) == 5
     for vigilance, n in counts.items():
@@ -84,9 +77,9 @@ def test_only_one_of_the_two_filters_is_as_sure_of_itself_as_it_may_be():
 
 
 def test_the_trained_agent_walks_to_the_ball_as_straight_as_a_planner(agent):
-    ours = evaluate(greedy(agent), n=150, seed=5)
+    ours = evaluate(approach.greedy(agent), n=150, seed=5)
     plan = evaluate(planner(), n=150, seed=5)
-    chance = evaluate(at_random(), n=150, seed=5)
+    chance = evaluate(approach.at_random(), n=150, seed=5)
     assert ours.is_success.mean() >= 0.97
     assert ours.detour.median() <= 1.10
     assert ours.bonus.mean() >= 0.70 - 2 * np.sqrt(0.7 * 0.3 / 150)
@@ -104,18 +97,19 @@ def test_the_fresh_starts_are_uniform_on_the_visible_field():
     assert starts.orientation.abs().max() <= np.radians(56.9) / 2
 
 
-def test_a_walk_is_a_walk(agent):
-    way = walk(agent, 2500.0, -0.3, seed=4)
-    table = way.table
-    assert way.is_success
-    assert way.reward in (100.0, 150.0)
+def test_a_trajectory_leads_to_the_ball(agent):
+    walked = approach.record_episode(agent, 2500.0, -0.3, seed=4)
+    table = walked.table
+    assert walked.is_success
+    assert walked.reward in (100.0, 150.0)
     assert table.distance.iloc[0] == pytest.approx(2500.0)
     assert table.orientation.iloc[0] == pytest.approx(-0.3)
     assert table.distance.iloc[-1] < 500
     assert table.action.iloc[-1] == -1
     steps = np.hypot(table.x.diff()[1:], table.y.diff()[1:])
     assert ((steps > 80) & (steps < 120)).all()
-    pd.testing.assert_frame_equal(table, walk(agent, 2500.0, -0.3, seed=4).table)
+    again = approach.record_episode(agent, 2500.0, -0.3, seed=4)
+    pd.testing.assert_frame_equal(table, again.table)
 
 
 def test_a_result_is_the_mean_and_the_range_of_its_seeds():
@@ -144,7 +138,7 @@ def test_results_do_not_depend_on_the_number_of_processes_and_are_taken_up(tmp_p
 
 
 def test_the_study_kept_with_the_course_is_over_twenty_seeds_and_shows_what_was_aimed_at():
-    study = pd.read_csv(data_file("approach_study.csv")).set_index("quantity")
+    study = approach.load_study().set_index("quantity")
     assert (study.seeds >= 20).all()
     who = "ARKAQ, consistent Kalman filter"
     assert study.loc[f"ball reached (%), {who}", "mean"] >= 99
@@ -159,7 +153,6 @@ def test_training_again_gives_the_same_agent(tmp_path):
     first.save(tmp_path / "first.npz")
     second.save(tmp_path / "second.npz")
     assert (tmp_path / "first.npz").read_bytes() == (tmp_path / "second.npz").read_bytes()
-    assert isinstance(Arkaq.load(tmp_path / "first.npz"), Arkaq)
 
 
 @pytest.mark.parametrize(
@@ -180,9 +173,28 @@ def test_bad_input_is_refused_by_name(call, words):
 
 def test_figures_and_table_quote_the_same_numbers_of_the_thesis():
     from arkaq_edu.experiments.segmentation import THESIS_COUNTS
-    from arkaq_edu.figures import goal
 
     quoted = {f"centers, vigilance {rho:g}": n for rho, n in THESIS_COUNTS.items()}
-    quoted |= {f"goal centers, vigilance {rho:g}": n for rho, n in goal.THESIS_COUNTS.items()}
-    quoted |= {f"goals (%), near, {who}": n for who, n in goal.THESIS_RATES.items()}
-    assert quoted == dict(thesis_numbers())
+    numbers = thesis_numbers()
+    assert quoted == dict(numbers[numbers.index.str.startswith("centers")])
+
+
+def test_the_learning_curve_is_the_mean_of_the_last_episodes():
+    agent = Arkaq(rng=0)
+    rows = [(3, 0.0), (4, 100.0), (5, 150.0), (2, 50.0)]
+    agent.history = [("segmentation", 9, 150.0, True)]
+    agent.history += [("Q-learning", cycles, reward, reward > 0) for cycles, reward in rows]
+    cycles, reward = learning_curve(agent, window=2)
+    assert cycles.tolist() == [7, 12, 14]
+    assert reward == pytest.approx([50, 125, 100])
+
+
+def test_the_two_problems_have_the_same_names():
+    shared = (
+        "VIGILANCE at_random calibrate describe evaluate greedy load_agent load_sightings "
+        "load_study make_task mean_nis patterns planner record_episode record_sightings seed_runs "
+        "study train"
+    )
+    for problem in (approach, goal):
+        assert set(shared.split()) <= set(dir(problem))
+        assert all(getattr(problem, name) is not None for name in shared.split())

@@ -13,7 +13,8 @@ from arkaq_edu._paths import data_file
 from arkaq_edu.arkaq import Estimator, Sensing, TrainingSettings
 from arkaq_edu.art import EuclideanART
 from arkaq_edu.envs.score_goal import KICK, STARTS, TURN_LEFT, TURN_RIGHT
-from arkaq_edu.experiments import count_centers, goal, greedy, load_agent, thesis_numbers
+from arkaq_edu.experiments import approach, count_centers, goal, thesis_numbers
+from arkaq_edu.experiments.goal import studies
 
 BRIEF = TrainingSettings.goal(patterns=150, exploration=200, exploitation=100)
 PRINTED = {0.075: 9, 0.06: 13, 0.05: 18}
@@ -21,7 +22,7 @@ PRINTED = {0.075: 9, 0.06: 13, 0.05: 18}
 
 @pytest.fixture(scope="module")
 def stream():
-    return goal.load_orientations()
+    return goal.load_sightings()
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +34,7 @@ def study():
 
 
 def test_the_recorded_stream_is_what_its_recipe_records(stream):
-    again = goal.record_orientations()
+    again = goal.record_sightings()
     pd.testing.assert_frame_equal(stream, again, check_exact=False, rtol=1e-9)
 
 
@@ -105,7 +106,7 @@ def test_the_filters_settings_are_those_that_the_stream_measures(stream):
 
 
 def test_innovations_are_as_large_as_the_filter_believes():
-    fresh = goal.record_orientations(n=800, seed=77)
+    fresh = goal.record_sightings(n=800, seed=77)
     senses, nis = Estimator(Sensing.goal()), []
     for row in fresh.itertuples():
         if row.cycle == 0:
@@ -136,10 +137,11 @@ def test_the_best_policy_earns_what_dynamic_programming_says(distance):
     start = STARTS[distance]
     o = rng.uniform(start.least, start.most, n) * rng.choice([-1, 1], n)
     sensing = Sensing.goal()
+    first, step = best.orientation[0], best.orientation[1] - best.orientation[0]
     for follow, expected in ((True, best.goals), (False, best.random)):
         place, kicked, goals = o.copy(), np.zeros(n, bool), 0.0
         for turns_left in range(30, 0, -1):
-            nearest = np.rint((place + 5) / 0.005).astype(int)
+            nearest = np.rint((place - first) / step).astype(int).clip(0, len(best.value) - 1)
             action = best.action[turns_left - 1, nearest] if follow else rng.integers(3, size=n)
             now = ~kicked & (action == KICK)
             goals += np.interp(place[now], best.orientation, best.chance).sum()
@@ -160,7 +162,7 @@ def test_dynamic_programming_knows_what_can_be_seen_without_it():
     assert once.random == pytest.approx(0.4 / 3)
 
 
-# TrainingSettings
+# Goals against kicks
 
 
 def test_the_study_is_over_thirty_seeds_and_shows_what_the_thesis_says(study):
@@ -206,13 +208,13 @@ def test_training_again_gives_the_courses_agent_and_its_share_of_the_study(
 def test_the_courses_agents_aim_and_kick(distance):
     agent = goal.load_agent(distance)
     assert agent.vigilance == goal.VIGILANCE[distance]
-    played = goal.shots(greedy(agent), 60, distance, seed=3)
+    played = goal.evaluate(goal.greedy(agent), 60, seed=3, goal_distance=distance)
     assert played.kicked.mean() > 0.95
     assert played.aim.abs().mean() < 0.12 < played.start.abs().mean()
 
 
 def test_every_policy_has_the_same_starts():
-    one, other = goal.shots(goal.oracle(), 5, seed=2), goal.shots(goal.at_random(), 5, seed=2)
+    one, other = (goal.evaluate(p, 5, seed=2) for p in (goal.planner(), goal.at_random()))
     assert (one.start == other.start).all()
     assert one.aim.abs().max() <= Sensing.goal().B[0][TURN_RIGHT] / 2
 
@@ -222,7 +224,7 @@ def test_a_study_is_its_plays_whatever_the_number_of_processes(monkeypatch):
         return long(seed, distance, kicks=50, fresh=50, learning=BRIEF)
 
     long = goal.play
-    monkeypatch.setattr(goal, "play", brief)
+    monkeypatch.setattr(studies, "play", brief)
     table = goal.study(seeds=1, jobs=1, progress=False)
     expected = pd.concat([brief(0, "near"), brief(0, "far")], ignore_index=True)
     pd.testing.assert_frame_equal(table, expected)
@@ -241,7 +243,7 @@ def test_rates_are_of_the_last_kicks_of_whoever_learns():
 
 
 def test_a_shot_is_a_film_of_what_the_agent_does():
-    shot = goal.shoot(goal.load_agent(), orientation=-0.3, seed=1)
+    shot = goal.record_episode(goal.load_agent(), orientation=-0.3, seed=1)
     assert shot.table.orientation.iloc[0] == pytest.approx(-0.3, abs=1e-3)
     assert shot.table.action.tolist()[-2:] == [KICK, -1]
     assert len(shot.frames) == len(shot.looks) > len(shot.table)
@@ -259,12 +261,12 @@ def test_a_shot_is_a_film_of_what_the_agent_does():
         (lambda: goal.best_policy("close"), "goal_distance must be 'near' or 'far'"),
         (lambda: goal.kick_trials("close", [0.0]), "goal_distance must be 'near' or 'far'"),
         (lambda: goal.rates(goal.load_study(), last=0), "last must be an integer >= 50, got 0"),
-        (lambda: goal.record_orientations(n=0), "n must be an integer >= 1, got 0"),
-        (lambda: goal.record_orientations(period=0), "period must be"),
-        (lambda: goal.shots(goal.oracle(), 0), "n must be"),
+        (lambda: goal.record_sightings(n=0), "n must be an integer >= 1, got 0"),
+        (lambda: goal.record_sightings(period=0), "period must be"),
+        (lambda: goal.evaluate(goal.planner(), 0), "n must be"),
         (lambda: goal.kick_trials(100.0, [0.0]), "distance must be"),
         (lambda: goal.best_policy("near", patience=0), "patience must be"),
-        (lambda: goal.shoot(load_agent()), "agent must have learned to score"),
+        (lambda: goal.record_episode(approach.load_agent()), "agent must have learned to score"),
         (lambda: goal.curve([True], block=0), "block must be"),
         (lambda: goal.study(seeds=0), "seeds must be"),
     ],

@@ -15,11 +15,14 @@ from PIL import Image
 from scipy import stats
 
 from arkaq_edu.arkaq import Arkaq, TrainingSettings
-from arkaq_edu.experiments import STARTS, Walk, load_agent, walk
+from arkaq_edu.experiments import approach
+from arkaq_edu.experiments.approach import TRAJECTORY_STARTS as STARTS
+from arkaq_edu.experiments.approach import Trajectory, record_episode, trajectory
 from arkaq_edu.field import Camera, Legs, World
 from arkaq_edu.field.camera import FIELD_OF_VIEW
 from arkaq_edu.field.view import EXTENT
-from arkaq_edu.figures import FIGURES, draw, field, policy, trajectories
+from arkaq_edu.figures import FIGURES, draw, field
+from arkaq_edu.figures import approach as figures
 from arkaq_edu.figures.drawing import animation, style
 
 BALL_PROBLEM = ["5.3", "5.5", "5.6", "5.7", "5.8", *(f"5.{n}" for n in range(10, 31))]
@@ -29,7 +32,7 @@ FROM_ABOVE = {23: 6, 27: 9, 29: 10}
 
 @pytest.fixture(scope="module")
 def agent():
-    return load_agent()
+    return approach.load_agent()
 
 
 def fresh_axes():
@@ -165,7 +168,7 @@ def test_eq_5_1_is_even_in_depth_and_the_other_on_the_field():
 
 
 def test_the_map_of_actions_is_the_greedy_policy(agent):
-    plot = policy.figure_5_16(fresh_axes(), agent=agent)
+    plot = figures.figure_5_16(fresh_axes(), agent=agent)
     places = agent.sensing.unscale(agent.art.cluster_centers_)
     for state, (distance, orientation) in enumerate(places):
         action = ("forward", "left", "right")[int(np.argmax(agent.q.Q[state]))]
@@ -177,11 +180,11 @@ def test_the_map_of_actions_is_the_greedy_policy(agent):
 
 
 def test_an_action_has_a_color_and_a_direction_of_its_own():
-    plot = policy.plot_policy([[0, -0.5], [0, 0], [0, 0.5]], [2, 0, 1], fresh_axes())
+    plot = figures.plot_policy([[0, -0.5], [0, 0], [0, 0.5]], [2, 0, 1], fresh_axes())
     for action, marks in plot.marks.items():
         assert to_hex(marks.get_color()) == style.ACTIONS[action]
         assert marks.get_label() == action
-    tips = {a: policy.MARKERS[a].vertices[3] for a in policy.MARKERS}
+    tips = {a: figures.MARKERS[a].vertices[3] for a in figures.MARKERS}
     assert tips["forward"] == pytest.approx([0, 1])
     assert tips["left"] == pytest.approx([-1, 0]) and tips["right"] == pytest.approx([1, 0])
     shades = [to_hex(color) for color in plot.cells.get_facecolors()]
@@ -193,12 +196,12 @@ def test_an_action_has_a_color_and_a_direction_of_its_own():
 )
 def test_the_map_of_actions_refuses_others(actions, message):
     with pytest.raises(ValueError, match=message):
-        policy.plot_policy([[0, 0], [0.5, 0.5]], actions, fresh_axes())
+        figures.plot_policy([[0, 0], [0.5, 0.5]], actions, fresh_axes())
 
 
 def test_an_agent_without_values_has_no_map():
     with pytest.raises(ValueError, match="agent must have learned"):
-        policy.figure_5_16(fresh_axes(), agent=Arkaq(rng=0))
+        figures.figure_5_16(fresh_axes(), agent=Arkaq(rng=0))
 
 
 def test_the_learning_curve_is_the_mean_of_the_last_episodes():
@@ -206,13 +209,13 @@ def test_the_learning_curve_is_the_mean_of_the_last_episodes():
     rows = [(3, 0.0), (4, 100.0), (5, 150.0), (2, 50.0)]
     agent.history = [("segmentation", 9, 150.0, True)]
     agent.history += [("Q-learning", cycles, reward, reward > 0) for cycles, reward in rows]
-    plot = policy.plot_learning(agent, fresh_axes(), window=2)
+    plot = figures.plot_learning(agent, fresh_axes(), window=2)
     assert plot.curve.get_xdata().tolist() == [7, 12, 14]
     assert plot.curve.get_ydata() == pytest.approx([50, 125, 100])
     assert set(plot.switch.get_xdata()) == {11}
     assert repr(plot) == "reward of 2 episodes: 50 at first, 100 at the end"
     with pytest.raises(ValueError, match="window must be"):
-        policy.plot_learning(agent, fresh_axes(), window=5)
+        figures.plot_learning(agent, fresh_axes(), window=5)
 
 
 # The trajectories: 5.17 to 5.30
@@ -221,7 +224,7 @@ def test_the_learning_curve_is_the_mean_of_the_last_episodes():
 @pytest.mark.parametrize(("number", "start"), IN_VIEW.items())
 def test_a_trajectory_in_view_is_the_walk_from_its_start(number, start, agent):
     plot = FIGURES[f"5.{number}"](fresh_axes(), agent=agent)
-    looks = walk(agent, *STARTS[start - 1]).table
+    looks = record_episode(agent, *STARTS[start - 1]).table
     assert np.column_stack(plot.truth.get_data()) == pytest.approx(
         looks[["orientation", "distance"]].to_numpy()
     )
@@ -239,29 +242,29 @@ def test_a_trajectory_in_view_is_the_walk_from_its_start(number, start, agent):
 @pytest.mark.parametrize(("number", "start"), FROM_ABOVE.items())
 def test_a_trajectory_from_above_leads_from_the_start_to_the_ball(number, start, agent):
     plot = FIGURES[f"5.{number}"](fresh_axes(), agent=agent)
-    way = walk(agent, *STARTS[start - 1])
-    xy = np.column_stack(plot.way.get_data())
-    assert xy == pytest.approx(way.table[["x", "y"]].to_numpy())
+    walked = record_episode(agent, *STARTS[start - 1])
+    xy = np.column_stack(plot.path.get_data())
+    assert xy == pytest.approx(walked.table[["x", "y"]].to_numpy())
     distance, orientation = STARTS[start - 1]
     ball = xy[0] + distance * np.array([np.cos(orientation), np.sin(orientation)])
     assert np.column_stack(plot.straight.get_data())[-1] == pytest.approx(ball)
-    walked = np.linalg.norm(np.diff(xy, axis=0), axis=1).sum()
-    detour = walked / (distance - np.linalg.norm(ball - xy[-1]))
-    assert f"{detour:.2f} × the straight way, +{way.reward:g}" in repr(plot)
+    length = np.linalg.norm(np.diff(xy, axis=0), axis=1).sum()
+    detour = length / (distance - np.linalg.norm(ball - xy[-1]))
+    assert f"{detour:.2f} × the straight line, +{walked.reward:g}" in repr(plot)
     assert len(plot.bodies.get_paths()) == len(range(0, len(xy) - 1, 5))
 
 
 def test_a_walk_that_fails_says_so(agent):
-    table = walk(agent, *STARTS[0]).table.iloc[:3]
-    lost = Walk(pd.DataFrame(table), False, 0.0)
-    for plot in (trajectories.plot_view, trajectories.plot_above):
+    table = record_episode(agent, *STARTS[0]).table.iloc[:3]
+    lost = Trajectory(pd.DataFrame(table), False, 0.0)
+    for plot in (figures.plot_view, figures.plot_above):
         assert "the ball is not reached" in repr(plot(lost, fresh_axes()))
 
 
 @pytest.mark.parametrize("number", [0, 12, 1.5])
 def test_there_are_eleven_trajectories(number):
     with pytest.raises(ValueError, match=r"number must be"):
-        trajectories.trajectory(number)
+        trajectory(number)
 
 
 # The moving picture
@@ -270,16 +273,16 @@ def test_there_are_eleven_trajectories(number):
 @pytest.fixture(scope="module")
 def short_walk(agent):
     """The end of a walk: a few looks, of which one shows nothing."""
-    way = walk(agent, *STARTS[0])
-    table = way.table.iloc[-4:].reset_index(drop=True)
+    walked = record_episode(agent, *STARTS[0])
+    table = walked.table.iloc[-4:].reset_index(drop=True)
     table.loc[1, ["seen_distance", "seen_orientation"]] = np.nan
-    return Walk(table, way.is_success, way.reward)
+    return Trajectory(table, walked.is_success, walked.reward)
 
 
 def test_marks_on_the_field_are_where_the_ball_was_seen_and_believed(short_walk):
     table = short_walk.table.assign(heading=lambda looks: looks.heading + 0.3)
-    moved = Walk(table, True, 100.0)
-    walking = animation.animate_walk(moved)
+    moved = Trajectory(table, True, 100.0)
+    walking = animation.animate(moved)
     walking._draw_was_started = True  # it is drawn here frame by frame
     for number, look in table.iterrows():
         walking._draw_frame(number)
@@ -305,7 +308,7 @@ def test_a_caption_says_what_was_seen_believed_and_done(short_walk):
     assert f"cycle 0: state {look.category:.0f}, so {action}" in first
     assert blind.startswith("nothing seen; estimate")
     assert last.endswith(f"cycle 3: reached, +{short_walk.reward:g}")
-    lost = Walk(short_walk.table, False, 0.0)
+    lost = Trajectory(short_walk.table, False, 0.0)
     assert animation.caption_at(lost, 3).endswith("the ball is lost")
 
 
@@ -319,7 +322,7 @@ def frames_of(path):
 
 
 def test_a_walk_is_kept_as_a_small_gif_with_a_frame_a_look(short_walk, tmp_path):
-    animation.save_walk(short_walk, tmp_path / "walk.GIF")
+    animation.save_film(short_walk, tmp_path / "walk.GIF")
     frames = frames_of(tmp_path / "walk.GIF")
     assert len(frames) == len(short_walk.table)
     assert min(abs(b - a).max() for a, b in itertools.pairwise(frames)) > 50, "it moves"
@@ -329,7 +332,7 @@ def test_a_walk_is_kept_as_a_small_gif_with_a_frame_a_look(short_walk, tmp_path)
 def test_a_walk_is_kept_as_a_page_that_needs_no_network(short_walk, tmp_path):
     pages = [tmp_path / name for name in ("one.html", "two.html")]
     for page in pages:
-        animation.save_walk(short_walk, page)
+        animation.save_film(short_walk, page)
     text = pages[0].read_text()
     assert text.count("data:image/png;base64") == len(short_walk.table)
     assert "http" not in text and "<link" not in text
@@ -339,15 +342,15 @@ def test_a_walk_is_kept_as_a_page_that_needs_no_network(short_walk, tmp_path):
 
 
 def test_a_walk_moves_in_a_notebook(short_walk, tmp_path):
-    moving = animation.MovingWalk(short_walk)
+    moving = animation.Film(short_walk)
     (tmp_path / "walk.png").write_bytes(moving._repr_png_())
     assert len(frames_of(tmp_path / "walk.png")) == len(short_walk.table)
-    assert repr(moving) == trajectories.how_it_went(short_walk)
+    assert repr(moving) == short_walk.summary
 
 
 @pytest.mark.parametrize("name", ["walk.mp4", "walk", "gif", ".html"])
 def test_other_endings_are_refused_before_anything_is_drawn(name, tmp_path, monkeypatch):
-    monkeypatch.setattr(animation, "animate_walk", lambda _: pytest.fail("drew"))
+    monkeypatch.setattr(animation, "animate", lambda _: pytest.fail("drew"))
     with pytest.raises(ValueError, match=r"path must end in \.gif or \.html, got"):
-        animation.save_walk(None, tmp_path / name)
+        animation.save_film(None, tmp_path / name)
     assert not list(tmp_path.iterdir())

@@ -13,9 +13,10 @@ from PIL import Image
 from arkaq_edu.arkaq import Arkaq
 from arkaq_edu.art import EuclideanART
 from arkaq_edu.envs.score_goal import ACTIONS
-from arkaq_edu.experiments import goal, load_agent
-from arkaq_edu.figures import FIGURES, policy
+from arkaq_edu.experiments import approach, goal, thesis_numbers
+from arkaq_edu.figures import FIGURES
 from arkaq_edu.figures import goal as figures
+from arkaq_edu.figures.approach import plot_learning
 from arkaq_edu.figures.drawing import animation, style
 
 GOAL_PROBLEM = [f"5.{n}" for n in (34, 35, 36, 37, 38, 39, 40, 41)]
@@ -45,12 +46,12 @@ def test_a_figure_draws_where_it_is_told_and_states_a_fact(number, monkeypatch):
 
 @pytest.mark.parametrize("vigilance", [0.075, 0.06, 0.05, 0.3])
 def test_centers_stand_on_the_line_where_the_network_put_them(vigilance):
-    stream = goal.patterns(goal.load_orientations())
+    stream = goal.patterns(goal.load_sightings())
     plot = figures.plot_segmentation(vigilance, fresh_axes())
     centers = EuclideanART(vigilance, 0.6).fit(stream).cluster_centers_.ravel() / 2
     assert sorted(plot.centers.get_xdata()) == pytest.approx(sorted(centers))
     assert repr(plot).startswith(f"{len(centers)} centers at vigilance {vigilance:g}")
-    printed = figures.THESIS_COUNTS.get(vigilance)
+    printed = thesis_numbers().get(f"goal centers, vigilance {vigilance:g}")
     assert ("the thesis printed" in repr(plot)) is (printed is not None)
     assert printed is None or repr(plot).endswith(f"printed {printed}")
     assert plot.ax.get_xlim() == (0.5, -0.5), "left is left"
@@ -58,7 +59,7 @@ def test_centers_stand_on_the_line_where_the_network_put_them(vigilance):
 
 def test_a_cell_is_where_its_center_is_the_nearest():
     centers = np.random.default_rng(0).uniform(-1, 1, (12, 1))
-    middles, ends = figures.line_cells(centers)
+    middles, ends = goal.cells(centers)
     assert ends[0] == 0.5 and ends[-1] == -0.5 and (np.diff(ends) < 0).all()
     for place in np.random.default_rng(1).uniform(-0.5, 0.5, 200):
         mine = np.searchsorted(-ends, -place) - 1
@@ -66,7 +67,7 @@ def test_a_cell_is_where_its_center_is_the_nearest():
 
 
 def test_the_stream_is_drawn_as_often_as_it_was_seen():
-    X = goal.patterns(goal.load_orientations())
+    X = goal.patterns(goal.load_sightings())
     plot = figures.figure_5_35(fresh_axes())
     tops, edges, base = plot.seen.get_data()
     counts, _ = np.histogram(X[np.abs(X) < 1] / 2, bins=edges)
@@ -86,7 +87,7 @@ def test_every_state_shows_its_greedy_action_in_its_color(agent):
     assert min(plot.marks["turn left"].get_xdata()) > max(plot.marks["turn right"].get_xdata())
 
 
-@pytest.mark.parametrize("who", [Arkaq(task="goal"), load_agent()])
+@pytest.mark.parametrize("who", [Arkaq(task="goal"), approach.load_agent()])
 def test_only_a_scorer_has_a_figure_5_39(who):
     with pytest.raises(ValueError, match="goal_agent must have learned to score"):
         figures.figure_5_39(fresh_axes(), goal_agent=who)
@@ -128,13 +129,13 @@ def test_curves_of_another_study_are_drawn_as_well():
 
 
 def test_the_film_of_a_shot_says_what_happened(agent, tmp_path):
-    shot = goal.shoot(agent, 0.3, seed=2)
-    said = animation.how_the_shot_went(shot)
+    shot = goal.record_episode(agent, 0.3, seed=2)
+    said = shot.summary
     assert said.startswith("the goal 0.30 rad left, 2 turns")
     assert said.endswith("a goal" if shot.is_success else "a miss")
     with pytest.raises(ValueError, match=r"\.gif or \.html"):
-        animation.save_shot(shot, tmp_path / "shot.avi")
-    moving = animation.MovingShot(shot)
+        animation.save_film(shot, tmp_path / "shot.avi")
+    moving = animation.Film(shot)
     assert repr(moving) == said
     with Image.open(io.BytesIO(moving._repr_png_())) as film:
         # Frames that show the same become one, which stays longer.
@@ -142,8 +143,8 @@ def test_the_film_of_a_shot_says_what_happened(agent, tmp_path):
 
 
 def test_the_film_of_a_shot_shows_the_half_that_robot_and_goal_are_in(agent):
-    shot = goal.shoot(agent, 0.3, seed=2, goal_distance="far")
-    film = animation.animate_shot(shot)
+    shot = goal.record_episode(agent, 0.3, seed=2, goal_distance="far")
+    film = animation.animate(shot)
     film._init_draw()  # a film that nobody has drawn warns
     (ax,) = film._fig.axes
     (low, high), (right, left) = ax.get_xlim(), ax.get_ylim()
@@ -153,7 +154,7 @@ def test_the_film_of_a_shot_shows_the_half_that_robot_and_goal_are_in(agent):
 
 
 def test_a_punished_episode_is_not_cut_off(agent):
-    plot = policy.plot_learning(agent, Figure().subplots())
+    plot = plot_learning(agent, Figure().subplots())
     low, high = plot.ax.get_ylim()
     rewards = plot.curve.get_ydata()
     assert low < rewards.min() < 0 < rewards.max() < high

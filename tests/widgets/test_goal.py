@@ -7,10 +7,12 @@ import pandas as pd
 import pytest
 
 from arkaq_edu.envs.score_goal import KICK, STARTS
-from arkaq_edu.experiments import aiming, goal
-from arkaq_edu.experiments.aiming import GRID
+from arkaq_edu.experiments import goal
+from arkaq_edu.experiments.goal import aiming, kicks, planning
+from arkaq_edu.experiments.goal.planning import ORIENTATIONS
 from arkaq_edu.field import pitch
 from arkaq_edu.figures.drawing import style
+from arkaq_edu.mdp import MDP, value_iteration
 from arkaq_edu.widgets import goal as widgets
 from arkaq_edu.widgets import scoring_explorer
 from arkaq_edu.widgets.scene import Cells, Line, Points, Text
@@ -43,8 +45,8 @@ def moved(explorer):
 
 
 @pytest.fixture(scope="module")
-def ways():
-    return aiming.ball_paths()
+def paths():
+    return kicks.ball_paths()
 
 
 @pytest.fixture(scope="module")
@@ -57,57 +59,75 @@ def of_kind(panel, kind):
     return [layer for layer in panel.layers if isinstance(layer, kind)]
 
 
-def test_the_quick_kicks_score_as_often_as_those_of_the_physics(ways, trials):
-    quick = aiming.chance(ways, DISTANCE, trials.orientation)
+def test_the_quick_kicks_score_as_often_as_those_of_the_physics(paths, trials):
+    quick = kicks.chance(paths, DISTANCE, trials.orientation)
     share = trials.goals / trials.kicks
     # Two standard errors of 250 kicks and of 500, and what posts and panels throw back.
     assert np.abs(quick - share).max() < 2 * np.sqrt(0.25 / 250 + 0.25 / 500) + 0.03
     assert abs(quick.mean() - share.mean()) < 0.03
 
 
-def test_best_and_random_are_those_of_the_other_program(ways):
-    scores = aiming.chances(ways, DISTANCE)
-    kicks = pd.DataFrame({"orientation": GRID, "kicks": 1.0, "goals": scores})
-    other = goal.best_policy("near", kicks, patience=aiming.PATIENCE)
-    _, best, random = aiming.prospects(scores, np.full(len(GRID), KICK)).over_starts()
-    assert best == pytest.approx(other.goals, abs=0.01)
-    assert random == pytest.approx(other.random, abs=0.01)
+def test_best_and_random_are_those_of_the_best_policy(paths):
+    chance = aiming.chance_on_grid(paths, DISTANCE)
+    counted = pd.DataFrame({"orientation": ORIENTATIONS, "kicks": 1.0, "goals": chance})
+    found = goal.best_policy("near", counted)
+    values = aiming.probabilities(chance, CENTERS, np.full(len(CENTERS), KICK))
+    assert mean(values["best"]) == pytest.approx(found.goals)
+    assert mean(values["random"]) == pytest.approx(found.random)
+    assert values["learned"] == pytest.approx(chance), "who kicks at once gets the kick"
 
 
-def test_the_value_of_a_policy_is_what_its_kicks_score(ways):
-    scores = aiming.chances(ways, DISTANCE)
-    actions = aiming.plan(scores, CENTERS)
-    learned = aiming.prospects(scores, actions[aiming.category(CENTERS, GRID)]).over_starts()[0]
+def mean(values):
+    return planning.mean_over_starts(values, STARTS["near"])
+
+
+def test_the_program_is_value_iteration_over_a_finite_horizon(paths):
+    n, chance = len(ORIENTATIONS), aiming.chance_on_grid(paths, DISTANCE)
+    T, R = np.zeros((3, n + 1, n + 1)), np.zeros((n + 1, 3))
+    for place, unit in enumerate(np.eye(n)):
+        T[:KICK, :n, place] = planning.after_turns(unit)
+    T[:, :, n] = 1 - T.sum(axis=2)  # kicked, or too far to the side
+    R[:n, KICK] = chance
+    values, _ = value_iteration(MDP(T, R, gamma=1 - 1e-12), horizon=planning.PATIENCE)
+    best = planning.goal_probability(chance, planning.best)
+    assert values[:n] == pytest.approx(best, abs=1e-9)
+
+
+def test_the_value_of_a_policy_is_what_its_kicks_score(paths):
+    chance = aiming.chance_on_grid(paths, DISTANCE)
+    actions = aiming.plan(chance, CENTERS)
+    learned = mean(aiming.probabilities(chance, CENTERS, actions)["learned"])
     aims = aiming.last_aims(CENTERS, actions, n=4000)
     assert len(aims) == 4000
-    assert np.interp(aims, GRID, scores).mean() == pytest.approx(learned, abs=0.01)
+    assert np.interp(aims, ORIENTATIONS, chance).mean() == pytest.approx(learned, abs=0.01)
 
 
-def test_a_policy_that_turns_away_never_scores(ways):
-    scores = aiming.chances(ways, DISTANCE)
-    assert aiming.prospects(scores, np.zeros(len(GRID), int)).over_starts()[0] == 0.0
-    assert len(aiming.last_aims(CENTERS, np.zeros(13, int), n=10)) == 0
+def test_a_policy_that_turns_away_never_scores(paths):
+    chance = aiming.chance_on_grid(paths, DISTANCE)
+    turn_left = np.zeros(len(CENTERS), int)
+    assert mean(aiming.probabilities(chance, CENTERS, turn_left)["learned"]) == 0.0
+    assert len(aiming.last_aims(CENTERS, turn_left, n=10)) == 0
 
 
-def test_the_map_turns_to_the_goal_and_kicks_before_it(ways):
-    actions = aiming.plan(aiming.chances(ways, DISTANCE), CENTERS)
+def test_the_map_turns_to_the_goal_and_kicks_before_it(paths):
+    actions = aiming.plan(aiming.chance_on_grid(paths, DISTANCE), CENTERS)
     text = "".join("rlk"[(1, 0, 2)[action]] for action in actions)
     assert re.fullmatch("r+k+l+|l+k+r+", text), text
     assert text[0] == "r", "a goal to the right wants a turn to the right"
 
 
-def test_a_spread_of_one_is_as_kicked_and_of_none_always_the_same(ways):
-    assert np.allclose(aiming.spread_out(ways, 1.0), ways)
-    ends = aiming.spread_out(ways, 2.0)[:, -1] - ways[:, -1].mean(axis=0)
-    assert np.allclose(ends.std(axis=0), 2 * ways[:, -1].std(axis=0))
-    assert set(aiming.chance(aiming.spread_out(ways, 0.0), DISTANCE, [0.0, 1.0])) == {0.0, 1.0}
+def test_a_spread_of_one_is_as_kicked_and_of_none_always_the_same(paths):
+    assert np.allclose(kicks.spread_out(paths, 1.0), paths)
+    ends = kicks.spread_out(paths, 2.0)[:, -1] - paths[:, -1].mean(axis=0)
+    assert np.allclose(ends.std(axis=0), 2 * paths[:, -1].std(axis=0))
+    assert set(kicks.chance(kicks.spread_out(paths, 0.0), DISTANCE, [0.0, 1.0])) == {0.0, 1.0}
 
 
 def test_a_goal_to_the_left_is_hit_by_a_kick_to_the_left():
     left = np.array([[[0.0, 0.0], [1900 * np.cos(0.2), 1900 * np.sin(0.2)]]])
-    straight = aiming.chance(left, 1500.0, [-0.2, 0.0, 0.2])
+    straight = kicks.chance(left, 1500.0, [-0.2, 0.0, 0.2])
     assert straight.tolist() == [0.0, 1.0, 1.0]
-    depth, across = aiming.on_the_field(left, 1500.0, [0.2])[0, -1]
+    depth, across = kicks.on_the_field(left, 1500.0, [0.2])[0, -1]
     assert (depth, across) == pytest.approx((400.0, 0.0), abs=1e-9)
 
 
@@ -157,9 +177,9 @@ def test_patterns_of_the_wrong_shape_are_refused():
     with pytest.raises(ValueError, match="patterns"):
         scoring_explorer([[0.0, 1.0]])
     with pytest.raises(ValueError, match="distance"):
-        aiming.chance(aiming.ball_paths(), 100.0, [0.0])
+        kicks.chance(kicks.ball_paths(), 100.0, [0.0])
     with pytest.raises(ValueError, match="factor"):
-        aiming.spread_out(aiming.ball_paths(), -1.0)
+        kicks.spread_out(kicks.ball_paths(), -1.0)
 
 
 def test_the_colors_of_the_strip_are_those_of_the_actions(moved, explorer):
@@ -172,4 +192,4 @@ def test_the_colors_of_the_strip_are_those_of_the_actions(moved, explorer):
     assert strip.palette[middle] == style.ACTIONS["kick"]
     assert strip.palette[strip.colors[0]] == style.ACTIONS["right"], "orientations begin at -.5"
     assert strip.palette[strip.colors[-1]] == style.ACTIONS["left"]
-    assert widgets.draw(goal.patterns(goal.load_orientations())).fact == explorer.drawn.fact
+    assert widgets.draw(goal.patterns(goal.load_sightings())).fact == explorer.drawn.fact

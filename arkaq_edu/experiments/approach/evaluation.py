@@ -122,6 +122,18 @@ class Trajectory:
     reward: float
 
     @property
+    def outcome(self) -> str:
+        """How the walk ended.
+
+        Examples
+        --------
+        >>> trajectory(1).outcome
+        'reached the ball in 8 footstep cycles, reward 150'
+        """
+        end = "reached the ball" if self.is_success else "did not reach the ball"
+        return f"{end} in {len(self.table) - 1} footstep cycles, reward {self.reward:g}"
+
+    @property
     def summary(self) -> str:
         """Where the ball was at the start, how long the path was, and what it earned.
 

@@ -11,7 +11,15 @@ from numpy.typing import ArrayLike, NDArray
 from arkaq_edu.arkaq import Sensing, TrainingSettings
 from arkaq_edu.envs.score_goal import KICK, STARTS, TURN_LEFT, TURN_RIGHT
 from arkaq_edu.experiments.goal.kicks import chance
-from arkaq_edu.experiments.goal.planning import ORIENTATIONS, PATIENCE, on_grid
+from arkaq_edu.experiments.goal.planning import (
+    ORIENTATIONS,
+    PATIENCE,
+    best,
+    follow,
+    goal_probability,
+    on_grid,
+    random,
+)
 from arkaq_edu.field.goal import GOAL_REWARD, MISS_REWARD
 from arkaq_edu.mdp import MDP, value_iteration
 
@@ -106,6 +114,37 @@ def plan(
     R[:k, KICK] += inside @ np.interp(seen, ORIENTATIONS, earned)
     R[k] = 0.0
     return value_iteration(MDP(T, R, learning.gamma), tol=1e-3)[1][:k]
+
+
+def probabilities(
+    scores: Floats, centers: ArrayLike, actions: NDArray[np.intp]
+) -> dict[str, Floats]:
+    """Return the probability of a goal on `ORIENTATIONS`, by policy.
+
+    Parameters
+    ----------
+    scores : ndarray, shape (481,)
+        The chance that a kick scores, on `ORIENTATIONS`.
+    centers : array_like, shape (k, 1)
+        The states, scaled orientations.
+    actions : ndarray of int, shape (k,)
+        The action of each state.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (481,)
+        "learned" takes the `actions`, "best" sees the orientation itself, "random" draws.
+
+    Examples
+    --------
+    >>> scores = np.maximum(0.0, 0.6 - 2 * abs(ORIENTATIONS))
+    >>> values = probabilities(scores, [[0.0]], np.array([KICK]))
+    >>> [float(values[who][240].round(2)) for who in ("learned", "best", "random")]
+    [0.6, 0.6, 0.37]
+    """
+    learned = follow(actions[category(centers, ORIENTATIONS)])
+    policies = {"learned": learned, "best": best, "random": random}
+    return {who: goal_probability(scores, choose) for who, choose in policies.items()}
 
 
 def last_aims(centers: ArrayLike, actions: NDArray[np.intp], n: int, seed: int = 0) -> Floats:

@@ -99,9 +99,22 @@ class Shot:
     is_success: bool
 
     @property
-    def turns(self) -> int:
-        """How many turns the robot made."""
-        return int(self.table.action.isin(range(KICK)).sum())
+    def turns(self) -> str:
+        """How many turns the robot made, in words."""
+        n = int(self.table.action.isin(range(KICK)).sum())
+        return f"{n} turn{'s' * (n != 1)}"
+
+    @property
+    def outcome(self) -> str:
+        """How the shot ended.
+
+        Examples
+        --------
+        >>> from arkaq_edu.experiments.goal import load_agent
+        >>> record_episode(load_agent(), 0.1).outcome
+        'a goal after 1 turn'
+        """
+        return f"{'a goal' if self.is_success else 'a miss'} after {self.turns}"
 
     @property
     def summary(self) -> str:
@@ -110,14 +123,13 @@ class Shot:
         Examples
         --------
         >>> from arkaq_edu.experiments.goal import load_agent
-        >>> record_episode(load_agent(), 0.1).summary.split(",")[0]
-        'the goal 0.10 rad left'
+        >>> record_episode(load_agent(), 0.1).summary
+        'the goal 0.10 rad left, 1 turn: a goal'
         """
         start = self.table.orientation.iloc[0]
         aside = f"{abs(start):.2f} rad {'left' if start > 0 else 'right'}"
         where = "straight ahead" if round(start, 2) == 0 else aside
-        end = "a goal" if self.is_success else "a miss"
-        return f"the goal {where}, {self.turns} turn{'s' * (self.turns != 1)}: {end}"
+        return f"the goal {where}, {self.turns}: {'a goal' if self.is_success else 'a miss'}"
 
 
 def record_episode(

@@ -38,9 +38,8 @@ PATIENCE = 30
 def after_turns(values: Floats) -> tuple[Floats, Floats]:
     """Return the mean of `values` after a turn to the left and after one to the right.
 
-    A turn moves by `STEPS` places of the grid, with a normal error. Three points at -1, 0 and 1
-    times the square root of 3 standard deviations, with weights 1/6, 2/3, 1/6, have its moments.
-    Between places of the grid, values are interpolated; beyond the grid they are zero.
+    A turn moves by `STEPS` places of the grid, with an error. The error is -1, 0 or 1 places, with
+    weights that give it the variance of the footsteps. Beyond the grid, values are zero.
 
     Parameters
     ----------
@@ -57,8 +56,7 @@ def after_turns(values: Floats) -> tuple[Floats, Floats]:
     >>> left[240].round(3), right[240].round(3)  # from straight ahead
     (np.float64(-0.148), np.float64(0.148))
     """
-    sigma = np.sqrt(Sensing.goal().Q[0][0])
-    w = np.sqrt(3) * sigma / (ORIENTATIONS[1] - ORIENTATIONS[0]) / 6
+    w = Sensing.goal().Q[0][0] / (ORIENTATIONS[1] - ORIENTATIONS[0]) ** 2 / 2
     edge = np.zeros(STEPS + 1)
     padded = np.concatenate([edge, values, edge])
     mean = w * padded[:-2] + (1 - 2 * w) * padded[1:-1] + w * padded[2:]
@@ -210,4 +208,5 @@ def on_grid(orientations: ArrayLike, chance: ArrayLike) -> Floats:
     >>> float(on_grid([-0.5, 0.5], [0.2, 0.6])[240])  # straight ahead
     0.4
     """
-    return np.interp(ORIENTATIONS, orientations, chance, 0.0, 0.0)
+    x, y = np.asarray(orientations, dtype=float), np.asarray(chance, dtype=float)
+    return np.interp(ORIENTATIONS, x, y, 0.0, 0.0)
