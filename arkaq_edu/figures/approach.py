@@ -97,8 +97,8 @@ def plot_policy(
 
 def _arrows(places: NDArray[np.float64], action: str, ax: Axes, label: str) -> Line2D:
     (arrows,) = ax.plot(
-        *places.T, linestyle="none", marker=MARKERS[action], markersize=8, color=style.ACTIONS[action],
-        markeredgecolor=style.INK, markeredgewidth=0.3, label=label,
+        *places.T, linestyle="none", marker=MARKERS[action], markersize=8,
+        color=style.ACTIONS[action], markeredgecolor=style.INK, markeredgewidth=0.3, label=label,
     )  # fmt: skip
     return arrows
 
