@@ -116,7 +116,8 @@ def main() -> None:
     }
     short, long, many = sightings(500), sightings(100_000), sightings(1000, 1000)
 
-    stepping, track, batch = {}, {}, {}
+    gappy = np.where(np.random.default_rng(1).random(many.shape) < 0.1, np.nan, many)
+    stepping, track, batch, gappy_batch = {}, {}, {}, {}
     if has["filterpy"]:
         stepping["filterpy"] = len(short), stepped(filterpy_filter(), short)
         track["filterpy, 500 rows"] = len(short), lambda: filterpy_filter().batch_filter(short)
@@ -130,8 +131,9 @@ def main() -> None:
 
         peer = simdkalman.KalmanFilter(A, Q, H, R)
         start_at = {"initial_value": np.zeros(4), "initial_covariance": P0}
-        run = lambda: peer.compute(many, 0, filtered=True, smoothed=False, **start_at)  # noqa: E731
-        batch["simdkalman"] = many[..., 0].size, run
+        options = {"filtered": True, "smoothed": False} | start_at
+        batch["simdkalman"] = many[..., 0].size, lambda: peer.compute(many, 0, **options)
+        gappy_batch["simdkalman"] = many[..., 0].size, lambda: peer.compute(gappy, 0, **options)
 
     ours = stepped(kf, short)
     compare("predict and update called from Python", len(short), ours, stepping, rounds=41)
@@ -141,9 +143,9 @@ def main() -> None:
     compare("the same, every tenth sighting missing", len(gaps), lambda: kf.filter(gaps), {}, 9)
     ours = lambda: kalman_batch(A, H, Q, R, many, P0=P0)  # noqa: E731
     compare("1,000 tracks of 1,000 rows", many[..., 0].size, ours, batch, rounds=5)
-    gaps = np.where(np.random.default_rng(1).random(many.shape) < 0.1, np.nan, many)
-    ours = lambda: kalman_batch(A, H, Q, R, gaps, P0=P0)  # noqa: E731
-    compare("the same, a tenth of the entries missing", gaps[..., 0].size, ours, {}, rounds=5)
+    ours = lambda: kalman_batch(A, H, Q, R, gappy, P0=P0)  # noqa: E731
+    title = "the same, a tenth of the entries missing"
+    compare(title, gappy[..., 0].size, ours, gappy_batch, rounds=5)
 
 
 if __name__ == "__main__":
