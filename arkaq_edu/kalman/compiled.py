@@ -232,12 +232,10 @@ def mirror(P):
 
 
 @kernel
-def inverse_each(S, seen, V, precision):
-    """Set V to the inverse of the rows of S that are used, as `matrices.inverse` does.
-
-    The precision of a row is one over its variance given the used rows before it; 0 if not used.
-    """
+def inverse_each(S, seen, V):
+    """Set V to the inverse of the rows of S that are used, as `matrices.inverse` does."""
     m, _, L = S.shape
+    ratio = np.empty(L)
     for i in range(m):
         for j in range(m):
             for c in range(L):
@@ -245,84 +243,28 @@ def inverse_each(S, seen, V, precision):
     for k in range(m):
         for c in range(L):
             usable = seen[k, c] and V[k, k, c] > NEGLIGIBLE * S[k, k, c]
-            precision[k, c] = 1.0 / V[k, k, c] if usable else 0.0
+            ratio[c] = 1.0 / V[k, k, c] if usable else 0.0
         for i in range(m):
             for j in range(m):
                 if i != k and j != k:
                     for c in range(L):
-                        V[i, j, c] -= V[i, k, c] * precision[k, c] * V[k, j, c]
+                        V[i, j, c] -= V[i, k, c] * ratio[c] * V[k, j, c]
         for i in range(m):
             for c in range(L):
-                V[i, k, c] *= -precision[k, c]
-                V[k, i, c] *= precision[k, c]
+                V[i, k, c] *= -ratio[c]
+                V[k, i, c] *= ratio[c]
         for c in range(L):
-            V[k, k, c] = precision[k, c]
+            V[k, k, c] = ratio[c]
 
 
 @kernel
-def predict_state(A, B, x, u, x_prior):
-    """Eq 2.55: x_prior = A x + B u."""
-    vec_shared(A, x, x_prior)
-    for i in range(B.shape[0]):
-        Bu = 0.0
-        for j in range(B.shape[1]):
-            Bu += B[i, j] * u[j]
-        for c in range(x_prior.shape[1]):
-            x_prior[i, c] += Bu
-
-
-@kernel
-def predict_covariance(A, Q, P, AP, P_prior):
-    """Eq 2.56: P_prior = A P A' + Q."""
-    mul_shared(A, P, AP)
-    mul_shared_transpose(AP, A, P_prior)
-    add(P_prior, Q)
-
-
-@kernel
-def innovate(H, z, x_prior, innovation, y, seen):
-    """Set the innovation z - H x_prior, y (the same with 0 for NaN) and the entries seen."""
-    vec_shared(H, x_prior, innovation)
+def innovate(z, Hx, y, seen):
+    """Set y = z - H x with 0 where z is missing, and which entries are seen."""
     for i in range(z.shape[0]):
         for c in range(z.shape[1]):
-            innovation[i, c] = z[i, c] - innovation[i, c]
-            y[i, c] = 0.0 if math.isnan(z[i, c]) else innovation[i, c]
+            y[i, c] = 0.0 if math.isnan(z[i, c]) else z[i, c] - Hx[i, c]
         for c in range(seen.shape[1]):
             seen[i, c] = not math.isnan(z[i, c])
-
-
-@kernel
-def gain(H, R, P_prior, seen, HP, PH, S, S_inverse, precision, K):
-    """Eq 2.57: K = P H' S^-1 with S = H P H' + R."""
-    mul_shared(H, P_prior, HP)
-    mul_shared_transpose(HP, H, S)
-    add(S, R)
-    inverse_each(S, seen, S_inverse, precision)
-    transpose_each(HP, PH)
-    mul_each(PH, S_inverse, K)
-
-
-@kernel
-def correct_state(x_prior, K, y, x):
-    """Eq 2.58: x = x_prior + K y."""
-    vec_each(K, y, x)
-    for i in range(x.shape[0]):
-        for c in range(x.shape[1]):
-            x[i, c] += x_prior[i, c]
-
-
-@kernel
-def correct_covariance(H, R, P_prior, HP, K, KHP, PH, KR, K_transpose, P):
-    """Eq 2.59: P = P - K H P, then Joseph's form P - (P H' - K R) K'."""
-    mul_each(K, HP, KHP)
-    subtract(P_prior, KHP, P)
-    mul_shared_transpose(P, H, PH)
-    mul_shared_transpose(K, R, KR)
-    subtract(PH, KR, PH)
-    transpose_each(K, K_transpose)
-    mul_each(PH, K_transpose, KHP)
-    subtract(P, KHP, P)
-    mirror(P)
 
 
 @kernel
@@ -336,19 +278,38 @@ def batch(A, H, Q, R, x0, P0, Z, x, L):
     AP, KHP = np.empty((n, n, L)), np.empty((n, n, L))
     HP, K_transpose = np.empty((m, n, L)), np.empty((m, n, L))
     K, PH, KR = np.empty((n, m, L)), np.empty((n, m, L)), np.empty((n, m, L))
-    S, S_inverse = np.empty((m, m, L)), np.empty((m, m, L))
-    precision, seen = np.empty((m, L)), np.empty((m, L), np.bool_)
-    x_prior, innovation, y = np.empty((n, N)), np.empty((m, N)), np.empty((m, N))
-    B, u = np.empty((n, 0)), np.empty(0)
-    start = np.empty((n, N))
+    S, S_inverse, seen = np.empty((m, m, L)), np.empty((m, m, L)), np.empty((m, L), np.bool_)
+    x_now, x_prior, Ky = np.empty((n, N)), np.empty((n, N)), np.empty((n, N))
+    Hx, y = np.empty((m, N)), np.empty((m, N))
     for i in range(n):
-        start[i, :] = x0[i]
+        x_now[i, :] = x0[i]
         for j in range(n):
             P[i, j, :] = P0[i, j]
     for t in range(Z.shape[0]):
-        predict_state(A, B, x[t - 1] if t > 0 else start, u, x_prior)
-        predict_covariance(A, Q, P, AP, P_prior)
-        innovate(H, Z[t], x_prior, innovation, y, seen)
-        gain(H, R, P_prior, seen, HP, PH, S, S_inverse, precision, K)
-        correct_state(x_prior, K, y, x[t])
-        correct_covariance(H, R, P_prior, HP, K, KHP, PH, KR, K_transpose, P)
+        vec_shared(A, x_now, x_prior)  # eq 2.55: x = A x
+        mul_shared(A, P, AP)
+        mul_shared_transpose(AP, A, P_prior)
+        add(P_prior, Q)  # eq 2.56: P = A P A' + Q
+
+        vec_shared(H, x_prior, Hx)
+        innovate(Z[t], Hx, y, seen)
+        mul_shared(H, P_prior, HP)
+        mul_shared_transpose(HP, H, S)
+        add(S, R)
+        inverse_each(S, seen, S_inverse)
+        transpose_each(HP, PH)
+        mul_each(PH, S_inverse, K)  # eq 2.57: K = P H' (H P H' + R)^-1
+        vec_each(K, y, Ky)
+        for i in range(n):
+            for c in range(N):
+                x_now[i, c] = x[t, i, c] = x_prior[i, c] + Ky[i, c]  # eq 2.58: x = x + K y
+        mul_each(K, HP, KHP)
+        subtract(P_prior, KHP, P)  # eq 2.59: P = P - K H P
+
+        mul_shared_transpose(P, H, PH)
+        mul_shared_transpose(K, R, KR)
+        subtract(PH, KR, PH)
+        transpose_each(K, K_transpose)
+        mul_each(PH, K_transpose, KHP)
+        subtract(P, KHP, P)  # Joseph's form: P = P - (P H' - K R) K'
+        mirror(P)
