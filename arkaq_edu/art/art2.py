@@ -56,7 +56,7 @@ def f(x, k):
     signal = x.copy()
     for i in range(len(x)):
         if x[i] < k.theta:
-            damped = 2.0 * k.theta * x[i] ** 2 / (x[i] ** 2 + k.theta**2)
+            damped = 2.0 * k.theta * x[i] * x[i] / (x[i] * x[i] + k.theta * k.theta)
             signal[i] = damped if k.smooth else 0.0  # eq 2.32 or 2.34; the rest is 2.33 and 2.35
     return signal
 
@@ -135,7 +135,8 @@ def follow(I, u, k):
     """
     active = u > 0.0
     if not k.smooth and (np.minimum(I, u)[active] >= k.theta).all():
-        u = unit(np.where(active, I, 0.0))
+        u = np.where(active, I, 0.0)
+        u = u / norm(u)
     silent, q = np.zeros(len(I)), u / (k.e + norm(u))
     for _ in range(MOST_CYCLES):
         before = u

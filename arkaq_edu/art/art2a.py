@@ -13,7 +13,7 @@ from arkaq_edu.art.vectors import dot, unit
 
 
 class Parameters(NamedTuple):
-    """The parameters of the network."""
+    """The parameters of the network; beta is the learning rate."""
 
     vigilance: float
     beta: float
@@ -22,7 +22,7 @@ class Parameters(NamedTuple):
 
 @kernel
 def enter(x, theta):
-    """Return `x` with norm 1 and without noise: the F0 stage. Zeros if nothing remains."""
+    """Return `x` with norm 1 and without noise (the stage F0), or zeros if nothing remains."""
     x = unit(x)
     return unit(np.where(np.abs(x) < theta, 0.0, x))
 

@@ -6,6 +6,8 @@ the same bytes on every machine, compiled or not.
 
 import math
 
+import numpy as np
+
 from arkaq_edu._compiled import kernel
 
 
@@ -27,8 +29,11 @@ def norm(x):
 @kernel
 def unit(x):
     """Return `x` scaled to norm 1, and zeros as they are."""
-    size = norm(x)
-    return x / size if size > 0.0 else x
+    largest = np.abs(x).max()
+    if largest == 0.0:
+        return x
+    x = x / largest  # so that no square leaves the range of a float
+    return x / norm(x)
 
 
 @kernel

@@ -5,20 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 from itertools import pairwise
+from typing import Any
 
 import ipywidgets
 import numpy as np
-from numpy.typing import NDArray
 
-from arkaq_edu.art import (
-    ART1,
-    LETTERS,
-    learn_letters,
-    learned_norm,
-    match_norm,
-    reset_cosine,
-    reset_fact,
-)
+from arkaq_edu import art
+from arkaq_edu.art import LETTERS, learned_norm, match_norm, reset_cosine
 from arkaq_edu.figures.art import COSINES
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.widgets.explorer import Explorer
@@ -26,9 +19,16 @@ from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Te
 
 #: Norms of r between which the surface changes its shade.
 LEVELS = (0.75, 0.8, 0.85, 0.9, 0.95)
-#: Where the picture ends; learning must end at 1.
-_FAR, _WIDE = 1.5, 1.85  # of the curves, and with room for words
-_SLIDER = {"width": "min(100%, 36em)"}
+#: Where the slider of the letters stops.
+VIGILANCES = tuple(round(0.05 * step, 2) for step in range(21))
+_FAR, _WIDE = 1.5, 1.85  # where the curves end, and the axis, which leaves room for words
+
+
+def _slider(name: str, value: float, low: float, high: float, step: float) -> Any:
+    layout = {"width": "min(100%, 36em)"}
+    return ipywidgets.FloatSlider(
+        value, min=low, max=high, step=step, description=name, layout=layout
+    )
 
 
 def resonance_explorer() -> Explorer:
@@ -52,37 +52,35 @@ def resonance_explorer() -> Explorer:
     >>> explorer
     c d / (1 - d) is 2.7 and must not exceed 1 (c = 0.3, d = 0.9)
     """
-    ends = {"c": (0.05, 0.5, 0.05, 0.1), "d": (0.5, 0.95, 0.05, 0.9)}
-    ends["vigilance"] = (0.75, 0.99, 0.01, 0.95)
-    sliders = {
-        name: ipywidgets.FloatSlider(
-            start, min=low, max=high, step=step, description=name, layout=_SLIDER
-        )
-        for name, (low, high, step, start) in ends.items()
-    }
-    return Explorer(draw_surface, **sliders)
+    return Explorer(
+        draw_surface,
+        c=_slider("c", 0.1, 0.05, 0.5, 0.05),
+        d=_slider("d", 0.9, 0.5, 0.95, 0.05),
+        vigilance=_slider("vigilance", 0.95, 0.75, 0.99, 0.01),
+    )
 
 
 def draw_surface(c: float, d: float, vigilance: float) -> Scene:
-    """Return the norm of r twice: from above, with its reset line, and as figure 2.21 has it.
+    """Return the norm of r twice: from above with its line of resets, and as in figure 2.21.
 
     Parameters
     ----------
     c, d : float in (0, 1)
         As in `arkaq_edu.art.ART2`.
     vigilance : float in (0, 1)
-        Below it is a reset.
+        A smaller norm of r is a reset.
 
     Returns
     -------
     Scene
     """
     c, d, vigilance = (round(value, 3) for value in (c, d, vigilance))
-    panels = [_from_above(c, d, vigilance), _curves(c, d, vigilance)]
-    return Scene(reset_fact(c, d, vigilance), panels)
+    end = learned_norm(c, d)
+    panels = [_from_above(c, end, vigilance), _curves(c, end, vigilance)]
+    return Scene(art.reset_fact(c, d, vigilance), panels)
 
 
-def _from_above(c: float, d: float, vigilance: float) -> Panel:
+def _from_above(c: float, end: float, vigilance: float) -> Panel:
     cdz = np.linspace(0.002, _FAR, 150)
     borders = [0 * cdz, *(reset_cosine(level, cdz, c) for level in LEVELS), 0 * cdz + 1]
     bands = [
@@ -94,45 +92,34 @@ def _from_above(c: float, d: float, vigilance: float) -> Panel:
     seen[:-1] |= seen[1:]  # the line begins on the axis
     layers: list[Layer] = [
         Cells(bands, range(len(bands))[::-1], (0, _FAR, 0, 1)),
-        *_learned(c, d, (0, 1)),
+        *_end_of_learning(end, (0, 1)),
         Line(cdz[seen], limit[seen], style.OURS, 2.5),
     ]
     for level, border in zip(LEVELS, borders[1:-1], strict=True):
         if border[-1] > 0:
             layers.append(Text(1.03 * _FAR, float(border[-1]), f"norm {level:g}"))
-    end = learned_norm(c, d)
     cosine = float(reset_cosine(vigilance, end, c))
     if end <= 1 and cosine > 0:
         layers.append(Points([end], [cosine], 5.0, style.OURS))
-    return Panel(
-        "norm of c d z_J; reset below the thick line", "cos(u, z_J)", (0, _WIDE), (0, 1), layers,
-        xticks=[0, 0.5, 1, 1.5],
-    )  # fmt: skip
+    words = "norm of c d z_J; reset below the thick line"
+    return Panel(words, "cos(u, z_J)", (0, _WIDE), (0, 1), layers, xticks=[0, 0.5, 1, 1.5])
 
 
-def _curves(c: float, d: float, vigilance: float) -> Panel:
-    end = min(learned_norm(c, d), _FAR)
-    layers: list[Layer] = [*_learned(c, d, (0.7, 1.02))]
+def _curves(c: float, end: float, vigilance: float) -> Panel:
+    layers = _end_of_learning(end, (0.7, 1.02))
+    end = min(end, _FAR)
     for cosine in COSINES:
         for cdz, dashed in ((np.linspace(0, end, 60), False), (np.linspace(end, _FAR, 60), True)):
             layers.append(Line(cdz, match_norm(cosine, cdz, c), dashed=dashed))
-        name = f"cos {cosine:g}"
-        layers.append(Text(1.03 * _FAR, float(match_norm(cosine, _FAR, c)), name))
+        height = float(match_norm(cosine, _FAR, c))
+        layers.append(Text(1.03 * _FAR, height, f"cos {cosine:g}"))
     layers.append(Line([0, _FAR], [vigilance, vigilance], style.OURS, 2.5))
-    return Panel(
-        "norm of c d z_J; thick: vigilance", "norm of r", (0, _WIDE), (0.7, 1.02), layers,
-        xticks=[0, 0.5, 1, 1.5],
-    )  # fmt: skip
+    words = "norm of c d z_J; thick: vigilance"
+    return Panel(words, "norm of r", (0, _WIDE), (0.7, 1.02), layers, xticks=[0, 0.5, 1, 1.5])
 
 
-def _learned(c: float, d: float, ends: tuple[float, float]) -> list[Layer]:
-    """Return a mark where learning ends, if the picture reaches so far."""
-    end = learned_norm(c, d)
+def _end_of_learning(end: float, ends: tuple[float, float]) -> list[Layer]:
     return [Line([end, end], ends, style.QUIET, 1.0, dashed=True)] if end <= _FAR else []
-
-
-#: Where the slider of the letters stops.
-VIGILANCES = tuple(round(0.05 * step, 2) for step in range(21))
 
 
 def letters_explorer() -> Explorer:
@@ -154,54 +141,47 @@ def letters_explorer() -> Explorer:
     >>> explorer
     8 categories of 8 letters at vigilance 1
     """
-    counts = {vigilance: learn_letters(vigilance).n_clusters_ for vigilance in VIGILANCES}
-    slider = ipywidgets.FloatSlider(
-        0.5, min=0, max=1, step=0.05, description="vigilance", layout=_SLIDER
-    )
-    return Explorer(partial(draw_letters, counts), vigilance=slider)
+    counts = {vigilance: art.learn_letters(vigilance).n_clusters_ for vigilance in VIGILANCES}
+    return Explorer(partial(draw_letters, counts), vigilance=_slider("vigilance", 0.5, 0, 1, 0.05))
 
 
 def draw_letters(counts: Mapping[float, int], vigilance: float) -> Scene:
-    """Return the templates at one vigilance, with their letters, and the counts at all.
+    """Return the templates at one vigilance with their letters, and the counts at every vigilance.
 
     Parameters
     ----------
     counts : mapping of float to int
         Categories by vigilance.
     vigilance : float in [0, 1]
-        Where the slider stands.
+        The value of the slider.
 
     Returns
     -------
     Scene
     """
     vigilance = round(vigilance, 2)
-    network = learn_letters(vigilance)
+    network = art.learn_letters(vigilance)
     n = network.n_clusters_
     found = f"{n} categor{'y' if n == 1 else 'ies'}"
     fact = f"{found} of {len(LETTERS)} letters at vigilance {vigilance:g}"
-    curve = Panel(
-        "vigilance (a similarity)", "categories", (0, 1.02), (0, len(LETTERS) + 0.5),
-        [Line(list(counts), list(counts.values()), style.OURS),
-         Points([vigilance], [n], 5.0, style.OURS)],
-    )  # fmt: skip
+    ours = Line(list(counts), list(counts.values()), style.OURS)
+    dot = Points([vigilance], [n], 5.0, style.OURS)
+    top = len(LETTERS) + 0.5
+    curve = Panel("vigilance (a similarity)", "categories", (0, 1.02), (0, top), [ours, dot])
     return Scene(fact, [_templates(network), curve])
 
 
-def _templates(network: ART1) -> Panel:
-    polygons: list[NDArray[np.float64]] = []
-    colors: list[int] = []
+def _templates(network: art.ART1) -> Panel:
+    square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    points = np.array([(i % 5, 4 - i // 5) for i in range(25)])
+    templates = network.cluster_centers_.astype(int)
+    feet = [np.array([7 * (j % 3) + 1, 7.5 * (2 - j // 3) + 2]) for j in range(len(templates))]
     names: list[Layer] = []
-    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
-    for j, template in enumerate(network.cluster_centers_):
-        left, foot = 7 * (j % 3) + 1, 7.5 * (2 - j // 3) + 2
+    for j, (left, bottom) in enumerate(feet):
         members = [name for name, k in zip(LETTERS, network.labels_, strict=True) if k == j]
-        names.append(Text(left, foot - 0.9, " ".join(members) or "none now"))
-        for i, on in enumerate(template.astype(int).tolist()):
-            polygons.append(square + np.array([left + i % 5, foot + 4 - i // 5]))
-            colors.append(on)
-    grids = Cells(polygons, colors, (0, 21.5, 0, 22.5), ["#eeeeee", style.INK], border=0.8)
-    return Panel(
-        "templates, each above its letters", "", (0, 21.5), (0, 22.5), [grids, *names],
-        xticks=[], yticks=[],
-    )  # fmt: skip
+        names.append(Text(left, bottom - 0.9, " ".join(members) or "none now"))
+    squares = [square + foot + point for foot in feet for point in points]
+    view, palette = (0.0, 21.5, 0.0, 22.5), ["#eeeeee", style.INK]
+    grids = Cells(squares, templates.ravel().tolist(), view, palette, border=0.8)
+    words = "templates, each above its letters"
+    return Panel(words, "", view[:2], view[2:], [grids, *names], xticks=[], yticks=[])

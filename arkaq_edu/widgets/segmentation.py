@@ -1,4 +1,4 @@
-"""The vigilance explorer: move what decides a partition, watch the categories of the view."""
+"""The vigilance explorer: change what decides a partition, watch the categories of the view."""
 
 from __future__ import annotations
 
@@ -14,6 +14,17 @@ from numpy.typing import ArrayLike
 from arkaq_edu import _checks
 from arkaq_edu.art import ART2A, EuclideanART, coverage, quantization_error
 from arkaq_edu.experiments import segmentation
+from arkaq_edu.experiments.segmentation import (
+    DISTANCE,
+    LEARNING_RATE,
+    ORDERS,
+    ORIENTATION,
+    THESIS_COUNTS,
+    count_fact,
+    in_order,
+    in_view,
+    map_of,
+)
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.widgets.explorer import Explorer
 from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Text
@@ -21,35 +32,35 @@ from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Te
 #: The two methods of the thesis's section 4.2.
 METHODS = {"Euclidean": EuclideanART, "angular": ART2A}
 
-#: Where the sliders of vigilance stop: distances, the thesis's five among them, and cosines.
+#: The stops of the sliders of vigilance: distances, including the thesis's five, and cosines.
 VIGILANCES = tuple(round(0.025 + 0.005 * step, 3) for step in range(36))
 COSINES = tuple(round(0.5 + 0.01 * step, 2) for step in range(50))
 
 
 def vigilance_explorer(
-    patterns: ArrayLike | None = None, learning_rate: float = segmentation.LEARNING_RATE
+    patterns: ArrayLike | None = None, learning_rate: float = LEARNING_RATE
 ) -> Explorer:
-    """Return what decides a partition, on sliders, above the map of categories and the counts.
+    """Return controls of what decides a partition, above the map of categories and the counts.
 
     Parameters
     ----------
     patterns : array_like, shape (n, 2), optional
         Scaled patterns (distance, orientation) in the order in which they were recorded; the
-        course's recorded stream where it is None.
+        course's recorded stream by default.
     learning_rate : float in (0, 1]
-        Where the update factor eta stands at first, and for which the curve of counts is drawn.
+        The first value of the update factor eta. The curve of counts is drawn for this value.
 
     Returns
     -------
     Explorer
-        Its ``controls``: method (Euclidean or angular); vigilance, a distance, and cosine, the
-        vigilance of the angular method, of which the other is hidden; order, in which patterns
-        are presented; eta; and n, how many of them are.
+        Its ``controls``: method (Euclidean or angular); vigilance, a distance, or cosine, the
+        vigilance of the angular method (the other one is hidden); order, in which patterns are
+        presented; eta; and n, the number of patterns.
 
     Raises
     ------
     ValueError
-        For patterns of the wrong shape, and for a learning rate out of its range.
+        For patterns of the wrong shape, or a learning rate out of range.
 
     References
     ----------
@@ -84,28 +95,22 @@ def vigilance_explorer(
 
 
 def _controls(n: int, learning_rate: float) -> dict[str, Any]:
-    few = max(1, n // 13)  # the recorded stream in pieces of 500
-    wide, narrow, choice = ({"width": f"min(100%, {em}em)"} for em in (38, 21, 17))
+    def made(kind: Any, description: str, em: int, **look: Any) -> Any:
+        return kind(description=description, layout={"width": f"min(100%, {em}em)"}, **look)
+
+    few = max(1, n // 13)  # pieces of 500, if it is the recorded stream
+    menu, real, whole = ipywidgets.Dropdown, ipywidgets.FloatSlider, ipywidgets.IntSlider
+    distances = {"min": VIGILANCES[0], "max": VIGILANCES[-1], "step": 0.005}
+    cosines = {"min": COSINES[0], "max": COSINES[-1], "step": 0.01}
     controls = {
-        "method": ipywidgets.Dropdown(options=list(METHODS), description="method", layout=choice),
-        "vigilance": ipywidgets.FloatSlider(
-            0.15, min=VIGILANCES[0], max=VIGILANCES[-1], step=0.005, readout_format=".3f",
-            description="vigilance", layout=wide,
-        ),
-        "cosine": ipywidgets.FloatSlider(
-            0.95, min=COSINES[0], max=COSINES[-1], step=0.01,
-            description="vigilance", layout=wide | {"display": "none"},
-        ),
-        "order": ipywidgets.Dropdown(
-            options=segmentation.ORDERS, description="order", layout=choice
-        ),
-        "eta": ipywidgets.FloatSlider(
-            learning_rate, min=0.05, max=1.0, step=0.05, description="eta", layout=narrow
-        ),
-        "n": ipywidgets.IntSlider(
-            n, min=few, max=n, step=few, description="patterns", layout=narrow
-        ),
-    }  # fmt: skip
+        "method": made(menu, "method", 17, options=list(METHODS)),
+        "vigilance": made(real, "vigilance", 38, value=0.15, readout_format=".3f", **distances),
+        "cosine": made(real, "vigilance", 38, value=0.95, **cosines),
+        "order": made(menu, "order", 17, options=ORDERS),
+        "eta": made(real, "eta", 21, value=learning_rate, min=0.05, max=1.0, step=0.05),
+        "n": made(whole, "patterns", 21, value=n, min=few, max=n, step=few),
+    }
+    controls["cosine"].layout.display = "none"
 
     def show_its_vigilance(change: Any) -> None:
         angular = change["new"] == "angular"
@@ -122,8 +127,8 @@ def draw(
     method: str = "Euclidean",
     vigilance: float = 0.15,
     cosine: float = 0.95,
-    order: str = segmentation.ORDERS[0],
-    eta: float = segmentation.LEARNING_RATE,
+    order: str = ORDERS[0],
+    eta: float = LEARNING_RATE,
     n: int | None = None,
 ) -> Scene:
     """Return the picture for one setting: the map on the left, the counts on the right.
@@ -133,17 +138,17 @@ def draw(
     patterns : array_like, shape (N, 2)
         Scaled patterns as recorded. Coverage and error are measured on all of them.
     references : mapping of str to mapping of float to int
-        For each method the curve on the right: counts by vigilance.
+        The curve on the right for each method: counts by vigilance.
     method : str
         A key of `METHODS`.
     vigilance, cosine : float
         The vigilance of the Euclidean method and that of the angular method.
     order : str
-        One of `segmentation.ORDERS`, for the patterns that are learned.
+        One of `arkaq_edu.experiments.segmentation.ORDERS`, for the patterns that are learned.
     eta : float
         Update factor.
     n : int, optional
-        How many patterns are learned, the first ones recorded; all where it is None.
+        Number of patterns that are learned, the first ones recorded; all by default.
 
     Returns
     -------
@@ -151,14 +156,14 @@ def draw(
     """
     # A slider's steps add up to 0.15000000000000002.
     at = round(cosine if method == "angular" else vigilance, 3)
-    learned = segmentation.in_order(np.asarray(patterns)[:n], order)
+    learned = in_order(np.asarray(patterns)[:n], order)
     network = METHODS[method](at, round(eta, 3)).fit(learned)
     found = network.cluster_centers_
     counted = f"{len(found)} categor{'y' if len(found) == 1 else 'ies'} at vigilance {at:g}"
     if method == "angular":
         counted += f", a cosine: {degrees(acos(at)):.1f}°"
-    elif at in segmentation.THESIS_COUNTS:
-        counted = segmentation.count_fact(len(found), at)
+    elif at in THESIS_COUNTS:
+        counted = count_fact(len(found), at)
     curve = _cosine_curve if method == "angular" else _distance_curve
     covered = coverage(network, patterns)
     error = quantization_error(patterns, network.predict(patterns))
@@ -167,24 +172,32 @@ def draw(
 
 
 def _map(found: np.ndarray) -> Panel:
-    polygons, colors = segmentation.map_of(found)
-    across, up = segmentation.in_view(found).T
-    window = (*segmentation.ORIENTATION, *segmentation.DISTANCE)
+    polygons, colors = map_of(found)
+    across, up = in_view(found).T
     dots = Points(across, up, radius=style.dot_radius(len(found)) / 0.75)
     return Panel(
         "ball orientation (rad), left of the robot is left", "distance (mm)",
         style.VIEW_ORIENTATION, style.VIEW_DISTANCE,
-        [Cells(polygons, colors, window), dots], width=1.45,
+        [Cells(polygons, colors, (*ORIENTATION, *DISTANCE)), dots], width=1.45,
     )  # fmt: skip
 
 
-def _distance_curve(counts: Mapping[float, int], vigilance: float, n: int) -> Panel:
-    thesis = segmentation.THESIS_COUNTS
-    layers: list[Layer] = [
-        Line([vigilance, vigilance], [15, n], style.QUIET, 1.0, dashed=True),
+def _counts(
+    counts: Mapping[float, int], at: float, n: int, low: float, *printed: Layer
+) -> list[Layer]:
+    """Return the curve of counts, what the thesis prints, and this count on its dashed line."""
+    return [
+        Line([at, at], [low, n], style.QUIET, 1.0, dashed=True),
         Line(list(counts), list(counts.values()), style.OURS),
-        Points(list(thesis), list(thesis.values()), 5.0, hollow=True),
-        Points([vigilance], [n], 5.0, style.OURS),
+        *printed,
+        Points([at], [n], 5.0, style.OURS),
+    ]
+
+
+def _distance_curve(counts: Mapping[float, int], vigilance: float, n: int) -> Panel:
+    printed = Points(list(THESIS_COUNTS), list(THESIS_COUNTS.values()), 5.0, hollow=True)
+    layers = [
+        *_counts(counts, vigilance, n, 15, printed),
         Points([0.07], [3600], 5.0, hollow=True),
         Text(0.079, 3600, "the thesis"),
         Line([0.065, 0.075], [2400, 2400], style.OURS),
@@ -199,10 +212,8 @@ def _distance_curve(counts: Mapping[float, int], vigilance: float, n: int) -> Pa
 
 
 def _cosine_curve(counts: Mapping[float, int], cosine: float, n: int) -> Panel:
-    layers: list[Layer] = [
-        Line([cosine, cosine], [0, n], style.QUIET, 1.0, dashed=True),
-        Line(list(counts), list(counts.values()), style.OURS),
-        Points([cosine], [n], 5.0, style.OURS),
+    layers = [
+        *_counts(counts, cosine, n, 0),
         Line([0.51, 0.54], [66, 66], style.OURS),
         Text(0.56, 66, "all, as recorded", style.OURS),
         Points([0.525], [61], 5.0, style.OURS),

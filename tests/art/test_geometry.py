@@ -24,7 +24,7 @@ def test_a_cell_holds_the_points_nearest_to_its_center(n):
     assert inside.argmax(axis=0).tolist() == gaps.argmin(axis=1).tolist()
 
 
-def test_cells_that_touch_are_told():
+def test_cells_that_touch_are_paired():
     centers = np.array([[x, y] for y in (-0.5, 0.5) for x in (-0.6, 0.0, 0.61)])
     centers[3:, 0] += 0.1  # bricks: no four cells meet in a point
     _, pairs = voronoi_cells(centers)

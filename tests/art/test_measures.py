@@ -38,6 +38,6 @@ def test_the_quantization_error_is_the_spread_about_the_means(n, k, seed):
 
 
 @pytest.mark.parametrize(("places", "labels"), [([[0.0]], [0, 1]), ([0.0, 1.0], [0, 1])])
-def test_the_quantization_error_wants_a_label_a_place(places, labels):
+def test_the_quantization_error_needs_one_label_for_each_place(places, labels):
     with pytest.raises(ValueError, match=r"(labels|places) must"):
         quantization_error(places, labels)

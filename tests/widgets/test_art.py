@@ -132,6 +132,6 @@ def test_a_stored_notebook_shows_the_picture_and_the_fact(make, name):
     assert (pictures[0] != pictures[1]).any(axis=2).mean() > 0.01
 
 
-def test_the_canvas_is_told_the_colors_of_the_squares(letters):
+def test_the_canvas_gets_the_colors_of_the_squares(letters):
     layer = letters.view.scene["panels"][0]["layers"][0]
     assert layer["kind"] == "cells" and layer["palette"][1] == style.INK

@@ -142,7 +142,7 @@ def test_the_update_factor_is_the_readers():
 
 
 @pytest.mark.parametrize("bad", [[[1, 2, 3]], [[0, np.nan]], "a stream"])
-def test_bad_patterns_are_refused_at_the_door(bad):
+def test_bad_patterns_are_refused(bad):
     with pytest.raises(ValueError, match="patterns must"):
         vigilance_explorer(bad)
 
