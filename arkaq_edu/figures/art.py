@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike, NDArray
 from arkaq_edu import _checks
 from arkaq_edu.art import learned_norm, match_norm, reset_fact
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.figures.drawing.diagram import Diagram, blank, box, frame, node, wire, words
+from arkaq_edu.figures.drawing.diagram import blank, box, frame, node, wire, words
 from arkaq_edu.figures.drawing.plot import Plot
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ COSINES = (1.0, 0.8, 0.6, 0.4, 0.2, 0.0)
 # Diagrams
 
 
-def figure_2_18(ax: Axes | None = None) -> Diagram:
+def figure_2_18(ax: Axes | None = None) -> Plot:
     """Draw figure 2.18, the two layers of an ART network and the traces between them."""
     ax = blank(
         ax,
@@ -70,10 +70,10 @@ def figure_2_18(ax: Axes | None = None) -> Diagram:
         ("F2", "F1"): wire(ax, (2.7, 2.0), (2.7, 0.4)),
     }
     wires |= {("I", f"F1 {i}"): wire(ax, (x, -1.2), (x, -0.4)) for i, (x, _) in enumerate(features)}
-    return Diagram(ax, parts, wires)
+    return Plot(ax, parts=parts, wires=wires)
 
 
-def figure_2_19(ax: Axes | None = None) -> Diagram:
+def figure_2_19(ax: Axes | None = None) -> Plot:
     """Draw figure 2.19, ART1: two gains, the attentional and the orienting subsystem."""
     ax = blank(ax, "ART1: attention matches, orientation resets", (-0.6, 10.0), (-0.1, 6.8))
     frame(ax, (-0.3, 1.5), 6.0, 5.1)
@@ -104,10 +104,10 @@ def figure_2_19(ax: Axes | None = None) -> Diagram:
         ("F1", "A"): wire(ax, (5.1, 2.4), (6.9, 2.4), sign="−"),
         ("A", "F2"): wire(ax, (8.9, 2.4), (9.7, 2.4), (9.7, 5.2), (5.1, 5.2)),
     }
-    return Diagram(ax, parts, wires)
+    return Plot(ax, parts=parts, wires=wires)
 
 
-def figure_2_20(ax: Axes | None = None) -> Diagram:
+def figure_2_20(ax: Axes | None = None) -> Plot:
     """Draw figure 2.20, ART2: the loops of F1 between the input and F2, and the reset."""
     ax = blank(ax, "ART2: the loops of F1; black dots divide by norms", (-5.2, 3.8), (-1.6, 6.1))
     places = {
@@ -141,7 +141,7 @@ def figure_2_20(ax: Axes | None = None) -> Diagram:
         ("p", "r"): wire(ax, (-0.32, 3.49), (-2.28, 2.81), norm=True),
         ("r", "y"): wire(ax, (-2.6, 3.04), (-2.6, 5.6), (-0.5, 5.6)),
     }
-    return Diagram(ax, parts, wires)
+    return Plot(ax, parts=parts, wires=wires)
 
 
 # The reset
