@@ -260,6 +260,13 @@ def _measure(cols, rows, height, tilt, min_pixels):
     return math.sqrt(max(reach * reach - drop * drop, 1.0)), math.atan2(-aside, ahead)
 
 
+@kernel
+def _measure_ball(view, min_pixels):
+    """Return distance and orientation of the ball as it is seen now; (0, 0) if it is not."""
+    cols, rows = _ball_pixels(view)
+    return _measure(cols, rows, view.height, view.tilt, min_pixels)
+
+
 class Camera:
     """The ERS-7's camera: 208 x 160 pixels over 56.9 x 45.2 degrees.
 
@@ -325,10 +332,10 @@ class Camera:
         """
         if self.blurred(world):
             return None
-        seen = self._measured(*_ball_pixels(self.view(world)))
-        if seen and world.pan:
-            seen = seen._replace(orientation=seen.orientation + world.pan)
-        return seen
+        distance, orientation = _measure_ball(self.view(world), self.min_pixels)
+        if distance == 0.0:
+            return None
+        return Sighting(distance, orientation + world.pan if world.pan else orientation)
 
     def sighting_in(self, colors: np.ndarray) -> Sighting | None:
         """Return what a rendered picture shows of the ball.
@@ -344,9 +351,6 @@ class Camera:
             The same as `sighting` from the same place with the head straight.
         """
         rows, cols = np.nonzero(_checked(colors) == pitch.ORANGE)
-        return self._measured(cols, rows)
-
-    def _measured(self, cols: np.ndarray, rows: np.ndarray) -> Sighting | None:
         distance, orientation = _measure(cols, rows, self.height, self.tilt, self.min_pixels)
         return Sighting(distance, orientation) if distance > 0.0 else None
 

@@ -11,11 +11,11 @@ from PIL import Image, ImageDraw
 from arkaq_edu.field import pitch
 from arkaq_edu.field.camera import FIELD_OF_VIEW
 from arkaq_edu.field.kick import PAW_RADIUS
+from arkaq_edu.field.supervisor import MAX_BALL_DISTANCE
 from arkaq_edu.field.world import World
 
-# Drawn larger and shrunk, which smooths every edge.
+# The picture is drawn larger and then shrunk, which smooths every edge.
 _OVERSAMPLING = 3
-_SIGHT = 4100.0
 EXTENT = (
     -pitch.CARPET_LENGTH / 2,
     pitch.CARPET_LENGTH / 2,
@@ -109,18 +109,18 @@ def bird_view(
     width : int
         Width of the picture (pixels); its height follows from `region`.
     trail : sequence of (x, y)
-        Where the robot has been (mm).
+        The path of the robot so far (mm).
     sight : bool
         Whether to show the camera's field of view (figure 5.7).
     ball_trail : sequence of (x, y)
-        Where the ball has been (mm).
+        The path of the ball so far (mm).
     region : tuple of float
-        What to show: the lowest and highest x, then y (mm).
+        The part of the field to show: lowest and highest x, then y (mm).
 
     Returns
     -------
     ndarray of uint8, shape (height, width, 3)
-        Rows from +y down; `region` is its extent for ``imshow``.
+        The first row is at the highest y; pass `region` to ``imshow`` as the extent.
 
     Examples
     --------
@@ -132,7 +132,9 @@ def bird_view(
     x, y, heading = world.pose
     if sight:
         rim = np.linspace(-FIELD_OF_VIEW / 2, FIELD_OF_VIEW / 2, 25) + (heading + world.pan)
-        wedge = [(x + _SIGHT * math.cos(a), y + _SIGHT * math.sin(a)) for a in rim]
+        wedge = [
+            (x + MAX_BALL_DISTANCE * math.cos(a), y + MAX_BALL_DISTANCE * math.sin(a)) for a in rim
+        ]
         canvas.polygon([(x, y), *wedge], (255, 255, 255, 38))
     if len(trail) > 1:
         canvas.line(trail, (250, 225, 90), 28)
@@ -164,7 +166,7 @@ def _draw_pitch(canvas: _Canvas) -> None:
 def _draw_ball(canvas: _Canvas, x: float, y: float) -> None:
     orange = tuple(int(c) for c in pitch.PALETTE[pitch.ORANGE])
     canvas.disc(x + 10, y - 12, pitch.BALL_RADIUS + 4, (0, 0, 0, 70))
-    # A real ball of 84 mm is a dot on this scale: the rim makes it easy to find.
+    # A ball of 84 mm is only a dot on this scale. The rim makes it easy to find.
     canvas.disc(x, y, pitch.BALL_RADIUS + 8, orange, (120, 45, 10), 10)
 
 
