@@ -140,7 +140,7 @@ def _files(folder: Path) -> list[Path]:
 
 
 def write_whole(content: bytes, target: Path) -> None:
-    """Write a file so that, interrupted, it leaves no half of it under the name of `target`."""
+    """Write a file whole or not at all, even if interrupted."""
     target.parent.mkdir(parents=True, exist_ok=True)
     part = target.with_name(target.name + ".part")
     try:

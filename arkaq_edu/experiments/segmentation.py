@@ -14,9 +14,11 @@ from arkaq_edu import _checks
 from arkaq_edu.arkaq import Sensing, TrainingSettings
 from arkaq_edu.art.geometry import six_colors, voronoi_cells
 from arkaq_edu.experiments import approach
+from arkaq_edu.experiments.runs import thesis_numbers
+from arkaq_edu.experiments.streams import VIGILANCES
 
 #: The numbers of centers that the thesis prints, by vigilance (figures 5.10 to 5.14).
-THESIS_COUNTS = {0.15: 137, 0.1: 333, 0.075: 519, 0.05: 825, 0.025: 1933}
+THESIS_COUNTS = {rho: int(thesis_numbers()[f"centers, vigilance {rho:g}"]) for rho in VIGILANCES}
 
 #: The update factor eta with which the agent learns.
 LEARNING_RATE = TrainingSettings().learning_rate

@@ -171,14 +171,6 @@ def test_bad_input_is_refused_by_name(call, words):
         call()
 
 
-def test_figures_and_table_quote_the_same_numbers_of_the_thesis():
-    from arkaq_edu.experiments.segmentation import THESIS_COUNTS
-
-    quoted = {f"centers, vigilance {rho:g}": n for rho, n in THESIS_COUNTS.items()}
-    numbers = thesis_numbers()
-    assert quoted == dict(numbers[numbers.index.str.startswith("centers")])
-
-
 def test_the_learning_curve_is_the_mean_of_the_last_episodes():
     agent = Arkaq(rng=0)
     rows = [(3, 0.0), (4, 100.0), (5, 150.0), (2, 50.0)]
