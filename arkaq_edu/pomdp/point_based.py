@@ -137,8 +137,8 @@ def solve_point_based(pomdp: POMDP, tol: float = 1e-3, max_backups: int = 10_000
     tol : float, default 1e-3
         The search ends when the bounds at the start are no further apart than this.
     max_backups : int, default 10000
-        The search also ends after this many backups. There is no time limit, so the same model
-        gives the same bounds on every machine.
+        The search also ends after this many backups. There is no time limit, so the bounds do not
+        depend on the speed of the machine.
 
     Returns
     -------
