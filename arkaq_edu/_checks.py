@@ -1,4 +1,12 @@
-"""Refuse bad input at the door: what it was called, what came, what is allowed."""
+"""The gate: every number that enters the package is checked here, by one rule.
+
+A refusal names the argument, what was given and what is allowed. The rule for numbers:
+
+- a number is real and finite, and its magnitude is at most `LARGEST`;
+- text is not a number, even if it looks like one; nor is a date or a complex number;
+- a masked entry (``numpy.ma``), a NaN and a ``pandas.NA`` are the same thing: a missing number.
+  They are allowed only where the documentation says so.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +15,17 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+#: Larger magnitudes are refused, so that no method has to guard its products against overflow.
+LARGEST = 1e100
+
+#: Tables of more bytes than this are refused: they are typing errors, not plans.
+MOST_BYTES = 2**31
+
+#: Larger integers do not fit a table of int64.
+MOST_INTEGER = 2**63 - 1
+
+_MOST_SHOWN = 60  # characters of a value in a message
 
 
 def number(
@@ -20,6 +39,9 @@ def number(
 ) -> float:
     """Return `value` as a float inside an interval, or raise ``ValueError``.
 
+    Infinity is allowed only where it is a bound that was asked for, as in a temperature
+    in (0, inf].
+
     Examples
     --------
     >>> number("vigilance", 0.1, 0, 1, open_low=True)
@@ -28,32 +50,49 @@ def number(
     Traceback (most recent call last):
     ValueError: vigilance must be a number in (0, 1], got -2
     """
-    try:
-        x = float(value)
-    except (TypeError, ValueError):
-        x = math.nan
-    inside = (low < x if open_low else low <= x) and (x < high if open_high else x <= high)
+    x = _real(value)
     unbounded = low == -math.inf and high == math.inf
-    if not inside or (unbounded and math.isinf(x)):
+    inside = (low < x if open_low else low <= x) and (x < high if open_high else x <= high)
+    if not inside or (unbounded and math.isinf(x)):  # NaN is inside nothing
         left, right = "(" if open_low else "[", ")" if open_high else "]"
         allowed = "a finite number" if unbounded else f"a number in {left}{low:g}, {high:g}{right}"
-        raise ValueError(f"{name} must be {allowed}, got {value!r}")
+        raise ValueError(f"{name} must be {allowed}, got {shown(value)}")
+    if abs(x) > LARGEST and not math.isinf(x):
+        raise ValueError(f"{name} must be at most {LARGEST:g} in magnitude, got {shown(value)}")
     return x
+
+
+def _real(value: Any) -> float:
+    """Return one real number as a float, and NaN for all that is not one."""
+    if isinstance(value, np.ndarray):
+        value = value.item() if value.ndim == 0 and not np.ma.is_masked(value) else None
+    if isinstance(value, (str, bytes, np.datetime64, np.timedelta64)):
+        return math.nan
+    try:
+        return float(value)
+    except (TypeError, ValueError, OverflowError):
+        return math.nan
 
 
 def integer(name: str, value: Any, low: int = 0, high: int | None = None) -> int:
     """Return `value` as an int in [low, high], or raise ``ValueError``.
 
+    Arrays without axes and arrays of one element are integers too, as environments hand them out.
+
     Examples
     --------
+    >>> integer("action", np.array([2]), 0, 3)
+    2
     >>> integer("n_states", 2.5, 1)
     Traceback (most recent call last):
     ValueError: n_states must be an integer >= 1, got 2.5
     """
+    if isinstance(value, np.ndarray) and value.size == 1 and not np.ma.is_masked(value):
+        value = value.item()
     is_integer = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
-    if not is_integer or value < low or (high is not None and value > high):
+    if not is_integer or not low <= value <= (MOST_INTEGER if high is None else high):
         allowed = f">= {low}" if high is None else f"in [{low}, {high}]"
-        raise ValueError(f"{name} must be an integer {allowed}, got {value!r}")
+        raise ValueError(f"{name} must be an integer {allowed}, got {shown(value)}")
     return int(value)
 
 
@@ -69,11 +108,13 @@ def integers(
     ValueError: s must hold integers in [0, 9], got -1 at (1,)
     """
     x = np.asarray(value)
+    if np.ma.is_masked(value):
+        raise ValueError(f"{name} must hold integers, got a masked array")
     if x.size and x.dtype.kind not in "iu":
-        raise ValueError(f"{name} must hold integers, got dtype {x.dtype}")
-    if x.size and (x.min() < low or (high is not None and x.max() > high)):
-        outside = (x < low) if high is None else (x < low) | (x > high)
-        where = tuple(int(i) for i in np.argwhere(outside)[0])
+        raise ValueError(f"{name} must hold integers, got {shown(value)}")
+    most = MOST_INTEGER if high is None else high
+    if x.size and not low <= x.min() <= x.max() <= most:
+        where = tuple(int(i) for i in np.argwhere((x < low) | (x > most))[0])
         allowed = f">= {low}" if high is None else f"in [{low}, {high}]"
         raise ValueError(f"{name} must hold integers {allowed}, got {x[where]} at {where}")
     return x.astype(np.int64, copy=False)
@@ -84,16 +125,17 @@ def array(
 ) -> NDArray[np.float64]:
     """Return `value` as a float64 array of `shape` (``None`` stands for any length).
 
+    With `allow_nan` a missing entry is returned as NaN.
+
     Examples
     --------
     >>> array("Q", [[1, 0]], (2, 2))
     Traceback (most recent call last):
     ValueError: Q must have shape (2, 2), got (1, 2)
+    >>> array("Z", np.ma.masked_equal([3.0, -1.0], -1.0), (2,), allow_nan=True)
+    array([ 3., nan])
     """
-    try:
-        x = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} must be an array of numbers, got {value!r}") from None
+    x = value if type(value) is np.ndarray and value.dtype == np.float64 else _floats(name, value)
     fits = x.shape == shape or (
         x.ndim == len(shape)
         and all(want is None or want == have for want, have in zip(shape, x.shape, strict=True))
@@ -101,12 +143,38 @@ def array(
     if not fits:
         wanted = str(tuple("any" if s is None else s for s in shape)).replace("'any'", "any")
         raise ValueError(f"{name} must have shape {wanted}, got {x.shape}")
-    bad = ~np.isfinite(x) if not allow_nan else np.isinf(x)
+    # A NaN compares as False, so a missing entry is not "too large".
+    bad = np.abs(x) > LARGEST if allow_nan else ~(np.abs(x) <= LARGEST)
     if np.count_nonzero(bad):  # faster than bad.any() on a small array
         where = tuple(int(i) for i in np.argwhere(bad)[0])
         allowed = "finite numbers or NaN" if allow_nan else "finite numbers"
+        if math.isfinite(x[where]):
+            allowed = f"numbers of at most {LARGEST:g} in magnitude"
         raise ValueError(f"{name} must hold {allowed}, got {x[where]} at {where}")
     return x
+
+
+def _floats(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    """Return `value` as a float64 array in which every missing entry is NaN."""
+    refusal = ValueError(f"{name} must be an array of numbers, got {shown(value)}")
+    try:
+        x = value if isinstance(value, np.ndarray) else np.asarray(value)
+        if x.dtype.kind not in "biufO":
+            raise refusal
+        if x.dtype.kind == "O":  # mixed entries: missing ones become NaN, text is refused
+            entries = [_entry(entry) for entry in np.ma.filled(x, np.nan).flat]
+            return np.array(entries, dtype=np.float64).reshape(x.shape)
+        return np.asarray(np.ma.filled(np.ma.asarray(x).astype(np.float64), np.nan))
+    except (TypeError, ValueError, OverflowError):
+        raise refusal from None
+
+
+def _entry(entry: Any) -> float:
+    """Return one entry of an array of objects as a float."""
+    if isinstance(entry, (str, bytes, complex)) or np.ndim(entry):
+        raise TypeError
+    missing = entry is None or type(entry).__name__ in ("NAType", "MaskedConstant")
+    return math.nan if missing else float(entry)
 
 
 def covariance(name: str, value: ArrayLike, n: int) -> NDArray[np.float64]:
@@ -141,22 +209,87 @@ def covariance(name: str, value: ArrayLike, n: int) -> NDArray[np.float64]:
 def distribution(name: str, value: ArrayLike, *, axis: int = -1) -> NDArray[np.float64]:
     """Return `value` as probabilities that are >= 0 and sum to one along `axis`.
 
+    Sums are allowed to miss 1 by the square root of the precision of the given type (1.5e-8 for
+    float64, 3.5e-4 for float32). What is returned is divided by its sum.
+
     Examples
     --------
+    >>> distribution("b", np.float32([0.1, 0.2, 0.7])).sum()
+    np.float64(1.0)
     >>> distribution("b", [0.5, 0.6])
     Traceback (most recent call last):
     ValueError: b must sum to 1 along its last axis, got 1.1
     """
-    x = array(name, value, (None,) * np.ndim(value))
+    x = array(name, value, (None,) * np.ndim(value))  # type: ignore[arg-type]
     if (x < 0).any():
         where = tuple(int(i) for i in np.argwhere(x < 0)[0])
         raise ValueError(f"{name} must hold probabilities >= 0, got {x[where]} at {where}")
-    sums = x.sum(axis=axis)
-    off = np.abs(sums - 1) > 1e-9
+    given = getattr(value, "dtype", np.dtype(np.float64))
+    precision = np.finfo(given if given.kind == "f" else np.float64).eps
+    sums = x.sum(axis=axis, keepdims=True)
+    off = np.abs(sums - 1) > math.sqrt(precision)
     if off.any():
         which = "its last axis" if axis == -1 else f"axis {axis}"
-        row = tuple(int(i) for i in np.argwhere(off)[0])
+        row = tuple(int(i) for i in np.argwhere(off.squeeze(axis))[0])
         place = f" at {row}" if row else ""
-        got = f"{float(np.asarray(sums)[row]):.10g}"
+        got = f"{float(np.asarray(sums.squeeze(axis))[row]):.10g}"
         raise ValueError(f"{name} must sum to 1 along {which}, got {got}{place}")
-    return x
+    return x / sums if (sums != 1).any() else x
+
+
+def generator(name: str, value: Any) -> np.random.Generator:
+    """Return a random generator made from a seed, or the generator that was given.
+
+    Examples
+    --------
+    >>> int(generator("rng", 0).integers(100))
+    85
+    >>> generator("rng", -1)
+    Traceback (most recent call last):
+    ValueError: rng must be a numpy Generator, an integer >= 0 or None, got -1
+    """
+    if isinstance(value, np.random.Generator):
+        return value
+    if value is not None:
+        try:
+            value = integer(name, value)
+        except ValueError:
+            raise ValueError(
+                f"{name} must be a numpy Generator, an integer >= 0 or None, got {shown(value)}"
+            ) from None
+    return np.random.default_rng(value)
+
+
+def affordable(name: str, shape: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the `shape` of a table of float64, or refuse it where it is larger than memory.
+
+    Examples
+    --------
+    >>> affordable("n_states and n_actions", (10**9, 2))
+    Traceback (most recent call last):
+    ValueError: n_states and n_actions must need at most 2,147,483,648 bytes, got 16,000,000,000 \
+bytes for a table of 1000000000 x 2
+    """
+    size = 8 * math.prod(shape)
+    if size > MOST_BYTES:
+        table = " x ".join(map(str, shape))
+        raise ValueError(
+            f"{name} must need at most {MOST_BYTES:,} bytes, got {size:,} bytes "
+            f"for a table of {table}"
+        )
+    return shape
+
+
+def shown(value: Any) -> str:
+    """Return `value` for a message, cut where it is long.
+
+    Examples
+    --------
+    >>> shown("a" * 100)
+    "'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa..."
+    """
+    try:
+        text = " ".join(repr(value).split())
+    except Exception as error:  # a huge integer, or an object that cannot describe itself
+        text = f"<{type(value).__name__}: {error}>"
+    return text if len(text) <= _MOST_SHOWN else text[: _MOST_SHOWN - 3] + "..."
