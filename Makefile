@@ -4,14 +4,18 @@ VENV  := .venv
 BIN   := $(VENV)/bin
 READY := $(VENV)/ready
 
-# The first Python on the PATH that is new enough and can make virtual environments.
-PYTHON = $(shell for p in python3 python3.13 python3.12 python3.11 python; do \
-	$$p -c 'import sys, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null \
-	&& echo $$p && break; done)
-NO_PYTHON = this course needs Python 3.11 or newer with venv, and found none on the PATH \
+# The first Python on the PATH for which requirements.lock has wheels, and which can make virtual
+# environments. A newer Python would end in an installer's error.
+PYTHONS := 3.15 3.14 3.13 3.12 3.11
+PYTHON = $(shell for p in python3 $(PYTHONS:%=python%) python; do \
+	$$p -c 'import sys, ensurepip; sys.exit(not (3, 11) <= sys.version_info < (3, 16))' \
+	2>/dev/null && echo $$p && break; done)
+NO_PYTHON = this course needs Python 3.11 to 3.15 with venv, and found none on the PATH \
 	(on Debian or Ubuntu: apt install python3 python3-venv)
+PLATFORMS := x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu x86_64-pc-windows-msvc \
+	aarch64-apple-darwin
 
-.PHONY: help install lab test check reproduce bench notebooks lock
+.PHONY: help install lab test test-lowest check reproduce bench notebooks lock wheels
 
 help:
 	@echo 'make lab        open the course in JupyterLab'
@@ -22,6 +26,8 @@ help:
 	@echo 'make notebooks  run the notebooks and store what they show'
 	@echo 'make install    only make $(VENV), as each of the above does first'
 	@echo 'make lock       resolve requirements.lock anew from pyproject.toml'
+	@echo 'make wheels     check that the lock installs from wheels on every known system'
+	@echo 'make test-lowest  run the tests with the oldest versions that pyproject.toml allows'
 
 install: $(READY)
 
@@ -46,13 +52,33 @@ notebooks: $(READY)
 	$(BIN)/python notebooks/store.py
 
 # The lock holds hashes and no addresses, so it installs from any mirror.
-lock: $(READY)
-	$(BIN)/python -m pip install --quiet uv
+lock: $(BIN)/uv
 	$(BIN)/python -c 'import tomllib; \
 		print(*tomllib.load(open("pyproject.toml", "rb"))["build-system"]["requires"], sep="\n")' \
 	| $(BIN)/python -m uv pip compile pyproject.toml - --extra test --universal \
 		--python-version 3.11 --fork-strategy fewest --generate-hashes --upgrade \
 		--no-emit-index-url --no-annotate --no-header --quiet --output-file requirements.lock
+
+wheels: $(BIN)/uv
+	@for version in $(PYTHONS); do for platform in $(PLATFORMS); do \
+		$(BIN)/uv --no-config pip install --quiet --dry-run --no-deps --only-binary :all: \
+			--require-hashes --requirement requirements.lock --target build/wheels \
+			--python-version $$version --python-platform $$platform || exit 1; \
+		echo "Python $$version, $$platform: all wheels are there"; \
+	done; done
+
+# What only the newest versions have must not be imported: pyproject.toml names the oldest.
+test-lowest: $(BIN)/uv
+	$(BIN)/uv --no-config venv --quiet --clear --python $(BIN)/python build/lowest
+	$(BIN)/uv --no-config pip install --quiet --python build/lowest --resolution lowest-direct \
+		--only-binary :all: --requirement pyproject.toml --extra test editables hatchling
+	$(BIN)/uv --no-config pip install --quiet --python build/lowest --no-deps \
+		--no-build-isolation --editable .
+	build/lowest/bin/python -m pytest -n 2 --dist loadscope -q arkaq_edu tests \
+		--deselect tests/test_setup.py -m 'not browser'
+
+$(BIN)/uv: $(READY)
+	$(BIN)/python -m pip install --quiet uv
 
 # READY names the folder it was made for. Where the clone has moved since, or the Python below
 # has gone, what is installed points nowhere and is made again.
