@@ -428,4 +428,5 @@ def test_make_installs_anew_where_the_folder_has_moved(clone):
 def test_make_without_a_python_says_so_in_one_line(clone):
     answer, pip = clone[1](too_old=1)
     assert answer.returncode == 2 and pip == []
-    assert re.fullmatch(r"Makefile:\d+: \*\*\* this course needs Python 3.11 to 3.15 .+\n", answer.stderr)
+    says = r"Makefile:\d+: \*\*\* this course needs Python 3.11 to 3.15 .+\n"
+    assert re.fullmatch(says, answer.stderr)
