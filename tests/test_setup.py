@@ -81,6 +81,50 @@ def climbs(source, path):
     return up
 
 
+def trespasses(source, path):
+    """Those imports of the file at `path` that are private names of another room."""
+    room = path.parts[0].removesuffix(".py")
+    found = imports(source, ["arkaq_edu", *path.parts[:-1]])
+    names = [name.split(".")[1:] for name in found if name.startswith("arkaq_edu.")]
+    return {
+        ".".join(parts)
+        for parts in names
+        if parts[0] != room and any(part.startswith("_") for part in parts[1:])
+    }
+
+
+@pytest.mark.parametrize(
+    ("path", "source"),
+    [
+        ("widgets/art.py", "from arkaq_edu.art._index import nearest"),
+        ("widgets/art.py", "from arkaq_edu.figures.art import _fill"),
+        ("envs/goal.py", "from arkaq_edu._checks import _real"),
+    ],
+)
+def test_a_private_name_of_another_room_is_noticed(path, source):
+    assert trespasses(source, Path(path))
+
+
+def test_no_private_name_leaves_its_room():
+    package = ROOT / "arkaq_edu"
+    wrong = [
+        f"{path.relative_to(ROOT)} imports {name}"
+        for path in sorted(package.rglob("*.py"))
+        for name in sorted(trespasses(path.read_text(), path.relative_to(package)))
+    ]
+    assert wrong == []
+
+
+def test_every_import_within_the_package_is_absolute():
+    relative = [
+        f"{path.relative_to(ROOT)}:{node.lineno}"
+        for path in sorted((ROOT / "arkaq_edu").rglob("*.py"))
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.ImportFrom) and node.level
+    ]
+    assert relative == []
+
+
 @pytest.mark.parametrize(
     ("path", "source"),
     [
