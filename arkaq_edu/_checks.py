@@ -66,7 +66,7 @@ def _real(value: Any) -> float:
     """Return one real number as a float, and NaN for all that is not one."""
     if isinstance(value, np.ndarray):
         value = value.item() if value.ndim == 0 and not np.ma.is_masked(value) else None
-    if isinstance(value, (str, bytes, np.datetime64, np.timedelta64)):
+    if isinstance(value, (str, bytes, np.complexfloating, np.datetime64, np.timedelta64)):
         return math.nan
     try:
         return float(value)
