@@ -9,28 +9,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu._checks import array, distribution, integers, number
 
-#: The largest reward: whatever is summed or discounted then stays a float. A larger one is a
-#: mistake.
-LARGEST_REWARD = 1e100
-
-
-def rewards(name: str, value: ArrayLike, shape: tuple[int | None, ...]) -> NDArray[np.float64]:
-    """Return `value` as an array of rewards, or raise ``ValueError``.
-
-    Examples
-    --------
-    >>> rewards("R", [1.0, -1e200], (2,))
-    Traceback (most recent call last):
-    ValueError: R must lie in [-1e+100, 1e+100], got -1e+200
-    """
-    R = array(name, value, shape)
-    largest = max(R.min(initial=0), R.max(initial=0), key=abs)
-    if abs(largest) > LARGEST_REWARD:
-        raise ValueError(
-            f"{name} must lie in [{-LARGEST_REWARD:g}, {LARGEST_REWARD:g}], got {largest:g}"
-        )
-    return R
-
 
 class MDP:
     """A Markov decision process <S, A, T, R> with its discount rate.
@@ -88,7 +66,7 @@ class MDP:
         self.n_actions, self.n_states, n_next = self.T.shape
         if n_next != self.n_states or not self.T.size:
             raise ValueError(f"T must have shape (A, S, S), each at least 1, got {self.T.shape}")
-        self.R = rewards("R", R, (self.n_states, self.n_actions)).copy()
+        self.R = array("R", R, (self.n_states, self.n_actions)).copy()
         self.gamma = number("gamma", gamma, 0, 1, open_high=True)
         if start is None:
             start = np.full(self.n_states, 1 / self.n_states)

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 from arkaq_edu._checks import array, integer, integers, number
 from arkaq_edu.mdp import compiled
 from arkaq_edu.mdp.choice import softmax
-from arkaq_edu.mdp.model import LARGEST_REWARD, rewards
 
 
 class QLearner:
@@ -90,7 +89,7 @@ class QLearner:
             alpha = number("alpha", alpha, 0, 1)
         self.alpha = alpha
         self.gamma = number("gamma", gamma, 0, 1)
-        self.Q = np.full(shape, number("initial", initial, -LARGEST_REWARD, LARGEST_REWARD))
+        self.Q = np.full(shape, number("initial", initial))
         self.visits = np.zeros(shape, np.int64)
         self.rng = np.random.default_rng(rng)
 
@@ -140,7 +139,7 @@ class QLearner:
         n_states, n_actions = Q.shape
         s, s_next = integer("s", s, 0, n_states - 1), integer("s_next", s_next, 0, n_states - 1)
         a, n_steps = integer("a", a, 0, n_actions - 1), integer("n_steps", n_steps, 1)
-        r = number("r", r, -LARGEST_REWARD, LARGEST_REWARD)
+        r = number("r", r)
 
         alpha = self._rate(int(visits[s, a]) + 1)
         visits[s, a] += 1
@@ -225,7 +224,7 @@ class QLearner:
         columns = np.atleast_1d(
             integers("s", s, 0, n_states - 1),
             integers("a", a, 0, n_actions - 1),
-            rewards("r", r, (None,) * np.ndim(r)),
+            array("r", r, (None,) * np.ndim(r)),
             integers("s_next", s_next, 0, n_states - 1),
             np.asarray(terminated, dtype=bool),
             integers("n_steps", n_steps, 1),

@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from arkaq_edu.mdp.model import LARGEST_REWARD
+from arkaq_edu._checks import LARGEST
 from arkaq_edu.pomdp.model import POMDP
 
 Floats = NDArray[np.float64]
@@ -342,7 +342,7 @@ class _Reader(_Tokens):
             return self.belief
         what, low, high = "a probability in [0, 1]", 0.0, 1.0
         if letter == "R":
-            low, high = -LARGEST_REWARD, LARGEST_REWARD
+            low, high = -LARGEST, LARGEST
             what = f"a reward in [{low:g}, {high:g}]"
         return self.numbers(self.affordable(letter, shape), what, low, high)
 

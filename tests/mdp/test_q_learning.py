@@ -134,7 +134,7 @@ def test_boltzmann_frequencies_follow_the_stated_probabilities():
 
 @given(
     q=st.lists(st.floats(-1e100, 1e100), min_size=1, max_size=6),
-    temperature=st.floats(0, math.inf, exclude_min=True),
+    temperature=st.floats(0, 1e100, exclude_min=True) | st.just(math.inf),
 )
 def test_boltzmann_never_overflows(q, temperature):
     learner = QLearner(1, len(q), alpha=1.0, gamma=0.0, rng=0)
@@ -227,7 +227,7 @@ def test_copies_are_independent_and_equal(clone):
         ({"Q": np.full((3, 2), np.nan)}, "Q must hold finite numbers, got nan"),
         ({"visits": np.zeros((2, 2), int)}, r"visits must have shape \(3, 2\), got \(2, 2\)"),
         ({"visits": np.full((3, 2), -1)}, "visits must hold integers >= 0, got -1"),
-        ({"visits": np.zeros((3, 2))}, "visits must hold integers, got dtype float64"),
+        ({"visits": np.zeros((3, 2))}, "visits must hold integers, got array"),
         ({"rng": {"bit_generator": "MT19937"}}, "rng must be the state of a PCG64 generator"),
         ({"rng": None}, "rng must be the state of a PCG64 generator"),
     ],
@@ -261,7 +261,7 @@ def test_constructor_refuses(arguments, message):
 
 
 def test_an_initial_value_beyond_all_rewards_is_refused():
-    with pytest.raises(ValueError, match="initial must be a number in"):
+    with pytest.raises(ValueError, match=r"initial must be at most 1e\+100 in magnitude"):
         QLearner(3, 2, 0.5, 0.9, initial=1e101)
 
 
@@ -275,12 +275,12 @@ BAD_UPDATES = [
     ((0, 2, 1.0, 1), r"a must be an integer in \[0, 1\], got 2"),
     ((0, 0, 1.0, -1), r"s_next must be an integer in \[0, 2\], got -1"),
     ((0, 0, 1.0, 3, True), r"s_next must be an integer in \[0, 2\], got 3"),
-    ((0, 0, math.nan, 1), r"r must be a number in \[-1e\+100, 1e\+100\], got nan"),
-    ((0, 0, math.inf, 1), r"r must be a number in \[-1e\+100, 1e\+100\], got inf"),
-    ((0, 0, None, 1), r"r must be a number in \[-1e\+100, 1e\+100\], got None"),
+    ((0, 0, math.nan, 1), "r must be a finite number, got nan"),
+    ((0, 0, math.inf, 1), "r must be a finite number, got inf"),
+    ((0, 0, None, 1), "r must be a finite number, got None"),
     ((0, 0, 1.0, 1, False, 0), "n_steps must be an integer >= 1, got 0"),
     ((0, 0, 1.0, 1, False, 1.5), "n_steps must be an integer >= 1, got 1.5"),
-    ((0, 0, -2e100, 1), r"r must be a number in \[-1e\+100, 1e\+100\], got -2e\+100"),
+    ((0, 0, -2e100, 1), r"r must be at most 1e\+100 in magnitude, got -2e\+100"),
 ]
 
 
@@ -311,9 +311,9 @@ def test_numpy_scalars_and_whole_rewards_are_welcome():
         (([0, 3], 0, 0.0, 0, False), r"s must hold integers in \[0, 2\], got 3 at \(1,\)"),
         ((0, [0, -1], 0.0, 0, False), r"a must hold integers in \[0, 1\], got -1 at \(1,\)"),
         ((0, 0, [0.0, np.nan], 0, False), r"r must hold finite numbers, got nan at \(1,\)"),
-        ((0, 0, 0.0, [0.5], False), "s_next must hold integers, got dtype float64"),
+        ((0, 0, 0.0, [0.5], False), r"s_next must hold integers, got \[0.5\]"),
         (([0, 1], [0, 1, 0], 0.0, 0, False), "the columns must have one length"),
-        ((0, 0, [0.0, 1e101], 0, False), r"r must lie in \[-1e\+100, 1e\+100\], got 1e\+101"),
+        ((0, 0, [0.0, 1e101], 0, False), r"r must hold numbers of at most 1e\+100 in magnitude, got 1e\+101"),
         (([[0]], 0, 0.0, 0, False), r"the columns must have shape \(N,\), got \(1, 1\)"),
         ((0, 0, 0.0, 0, False, [1, 0]), r"n_steps must hold integers >= 1, got 0 at \(1,\)"),
     ],
