@@ -269,6 +269,8 @@ def test_the_wheel_carries_the_course_and_gives_a_student_a_copy(wheel, tmp_path
             assert own.suffix == ".ipynb" or own.read_bytes() == copied.read_bytes()
     assert (copy / "notebooks" / _paths.FIRST_PAGE).exists()
     assert not list(copy.rglob("*.py"))
+    words = Path("arkaq_edu", "exercises", "kalman.toml")
+    assert (wheel / words).read_bytes() == (ROOT / words).read_bytes()
     assert list(wheel.glob("*.data/data/share/jupyter/lab/settings/overrides.d/arkaq_edu.json"))
 
 

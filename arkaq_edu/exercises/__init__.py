@@ -4,7 +4,9 @@
 `ExerciseError` with what is wrong, and never gives the answer away. ``exercises.turn.hint()``
 prints the next of three hints, and ``exercises.turn.solution()`` an answer.
 
-What an exercise is: `arkaq_edu.exercises.exercise`. Each chapter has a module of its own.
+What an exercise is: `arkaq_edu.exercises.exercise`. Each chapter has a module with the right
+answers and the random cases, and beside it a TOML file with the words: praise, hints, known wrong
+answers.
 
 Examples
 --------

@@ -1,12 +1,17 @@
-"""What an exercise is: a question, fresh cases, the right answer, the known wrong ones, hints."""
+"""What an exercise is: a question, fresh cases, the right answer, the known wrong ones, hints.
+
+The words of the exercises are in a TOML file beside each module: see `exercise`.
+"""
 
 from __future__ import annotations
 
 import copy
 import functools
 import inspect
+import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +21,8 @@ from numpy.typing import NDArray
 Rule = Callable[..., Any]
 #: Draws the argument tuples on which an answer is tried.
 Cases = Callable[[np.random.Generator], Sequence[tuple[Any, ...]]]
+#: The argument tuples that one draw gives.
+Draws = list[tuple[Any, ...]]
 
 
 class ExerciseError(AssertionError):
@@ -69,7 +76,7 @@ def ask(function: Callable[..., Any], *arguments: Any) -> Any:
     return answer
 
 
-@dataclass(kw_only=True)
+@dataclass
 class Part:
     """One step of a check: cases, and the known wrong answers to them.
 
@@ -89,9 +96,10 @@ class Part:
         raises `ExerciseError` for what cannot be an answer. By default it just calls the function.
     close : callable
         ``close(found, wanted)`` says which numbers are near enough.
-    tell : callable, optional
-        ``tell(found, wanted, *case)`` returns what to say to a wrong answer that no rule explains,
-        or None for the usual words.
+    tell : dict of str to str
+        What to say to a wrong answer that no rule explains. Each key is a condition on the
+        answer `found`, the answer `wanted` and the arguments of the case; ``otherwise`` always
+        holds. The words are those of an f-string. If no condition holds, the usual words are said.
     """
 
     cases: Cases | None = None
@@ -100,7 +108,7 @@ class Part:
     right: Rule | None = None
     answer: Callable[..., Any] = ask
     close: Callable[..., Any] = np.isclose
-    tell: Callable[..., str | None] | None = None
+    tell: dict[str, str] = field(default_factory=dict)
 
     def agree(self, answers: Sequence[Any], others: Sequence[Any]) -> list[bool]:
         """Return which of the answers have the shape of the others, and nearly their numbers."""
@@ -124,11 +132,11 @@ class Exercise:
         The right answer. Its docstring says what is asked, and its source is the solution.
     praise : str
         What a passing check prints.
-    hints : tuple of str
+    hints : sequence of str
         Three hints: a nudge, a part of the answer, and how to write all of it.
     parts : tuple of Part
         What the check goes through. It stops at the first part that is wrong.
-    returns : str or tuple of str
+    returns : str or list of str
         What the answer is, in words, or the names of several results.
     points : int
         What a right answer earns.
@@ -141,6 +149,7 @@ class Exercise:
     >>> part = Part(
     ...     cases=lambda rng: [(x,) for x in rng.uniform(3, 9, 5)],
     ...     wrong={"x + 2": "you add two", "x**2": "you square"},
+    ...     tell={"found < wanted": "two times {x:.0f} is more than {found:.0f}"},
     ... )
     >>> exercise = Exercise(twice, "Right: twice.", ("Add.", "x + ...", "x + x"), (part,))
     >>> exercise.check(lambda x: x + x)
@@ -148,6 +157,9 @@ class Exercise:
     >>> exercise.check(lambda x: x * x)
     Traceback (most recent call last):
     arkaq_edu.exercises.exercise.ExerciseError: you square
+    >>> exercise.check(lambda x: x, rng=1)
+    Traceback (most recent call last):
+    arkaq_edu.exercises.exercise.ExerciseError: two times 6 is more than 6
     >>> exercise.check(lambda x: [x, x])
     Traceback (most recent call last):
     arkaq_edu.exercises.exercise.ExerciseError: twice should return one number, not 2 numbers
@@ -161,10 +173,10 @@ class Exercise:
 
     right: Rule
     praise: str
-    hints: tuple[str, ...]
+    hints: Sequence[str]
     parts: tuple[Part, ...]
     _: KW_ONLY
-    returns: str | tuple[str, ...] = "one number"
+    returns: str | Sequence[str] = "one number"
     points: int = 2
     _hinted: int = field(default=0, init=False)
 
@@ -226,7 +238,7 @@ class Exercise:
     def function(self, expression: str) -> Rule:
         """Return the function of this exercise's arguments that an expression of ours computes."""
         arguments = ", ".join(inspect.signature(self.right).parameters)
-        return eval(f"lambda {arguments}: {expression}", self.right.__globals__)  # type: ignore[attr-defined]
+        return self._evaluate(f"lambda {arguments}: {expression}", {})
 
     def numbers(self, answer: Any, *shapes: tuple[int, ...]) -> NDArray[np.float64]:
         """Return an answer as an array of one of these shapes, or say what it is instead."""
@@ -245,11 +257,15 @@ class Exercise:
         return found
 
     def _expected(self, shape: tuple[int, ...]) -> str:
-        if isinstance(self.returns, tuple):
+        if not isinstance(self.returns, str):
             *first, last = self.returns
             count = {2: "two", 3: "three"}[len(self.returns)]
             return f"{count} numbers: {', '.join(first)} and {last}"
         return self.returns + (f", here {_in_words(shape)}" if shape else "")
+
+    def _evaluate(self, expression: str, names: dict[str, Any]) -> Any:
+        # Expressions are data of this package, never input.
+        return eval(expression, self.right.__globals__ | names)  # type: ignore[attr-defined]
 
     def _judge(
         self, part: Part, function: Callable[..., Any], cases: Sequence[tuple[Any, ...]]
@@ -274,12 +290,14 @@ class Exercise:
         ]
         first = good.index(False)
         one, other = found[first], wanted[first]
-        told = part.tell(one, other, *cases[first]) if part.tell else None
-        if told:
-            return told
+        case = dict(zip(inspect.signature(self.right).parameters, cases[first], strict=False))
+        names = {"found": one, "wanted": other, "otherwise": True, **case}
+        for condition, words in part.tell.items():
+            if self._evaluate(condition, names):
+                return self._evaluate(f"f{words!r}", names)
         place = int(np.argmin(part.close(one, other)))
         name = f"the {part.of}" if part.of else self.name
-        if not part.of and isinstance(self.returns, tuple):
+        if not part.of and not isinstance(self.returns, str):
             name = self.returns[place]
         yours, ours = one.flat[place], other.flat[place]
         return (
@@ -288,27 +306,57 @@ class Exercise:
         )
 
 
-def exercise(
-    praise: str,
-    *hints: str,
-    returns: str | tuple[str, ...] = "one number",
-    points: int = 2,
-    then: tuple[Part, ...] = (),
-    **first: Any,
-) -> Callable[[Rule], Exercise]:
+@functools.cache
+def _tables(file: Path) -> dict[str, Any]:
+    return tomllib.loads(file.read_text("utf-8"))
+
+
+def exercise(only: Part | None = None, /, **steps: Part) -> Callable[[Rule], Exercise]:
     """Make an exercise of the function below, which is its right answer.
+
+    The rest is in the table with the function's name in the TOML file beside its module: praise,
+    hints, returns and points (see `Exercise`), and what each step says to a wrong answer (`wrong`
+    and `tell`, see `Part`).
 
     Parameters
     ----------
-    praise, hints, returns, points
-        See `Exercise`.
-    then : tuple of Part
-        What is judged after the first part.
-    **first
-        The first `Part`.
+    only : Part
+        The only step. Its tables in the file are ``[NAME.wrong]`` and ``[NAME.tell]``.
+    **steps : Part
+        Several steps, in their order. Their tables are ``[NAME.wrong.STEP]`` and
+        ``[NAME.tell.STEP]``. A step with the name of one of several results judges only that.
+
+    Raises
+    ------
+    ValueError
+        If the file has no such table, or the table does not fit the steps.
     """
-    parts = (Part(**first), *then)
-    return lambda right: Exercise(right, praise, hints, parts, returns=returns, points=points)
+    parts = {"": only} if only else steps
+
+    def make(right: Rule) -> Exercise:
+        file, name = Path(inspect.getfile(right)).with_suffix(".toml"), right.__name__
+        table = dict(_tables(file).get(name, {}))
+        for key in ("wrong", "tell"):
+            tables = table.pop(key, {})
+            for step, words in ({"": tables} if only else tables).items():
+                place = f"{file.name}: [{'.'.join(filter(None, (name, key, step)))}]"
+                if step not in parts or not all(isinstance(text, str) for text in words.values()):
+                    known = f"the steps {', '.join(steps)}" if steps else "a single step"
+                    raise ValueError(f"{place} should be texts; {file.stem}.py has {known}")
+                strings = [f"f{text!r}" for text in words.values()] if key == "tell" else []
+                for code in (*words, *strings):
+                    compile(code, place, "eval")
+                setattr(parts[step], key, words)
+        if table.keys() != {"praise", "hints", "returns", "points"}:
+            found = ", ".join(table) or "nothing"
+            raise ValueError(
+                f"{file.name}: [{name}] should have praise, hints, returns and points, not {found}"
+            )
+        for step, part in parts.items():
+            part.of = step if step in list(table["returns"]) else ""
+        return Exercise(right, parts=tuple(parts.values()), **table)
+
+    return make
 
 
 def index(

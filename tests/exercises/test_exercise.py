@@ -1,6 +1,9 @@
 """What holds for every exercise: its rules, hints and solution, and the words of a notebook."""
 
 import dataclasses
+import importlib
+import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -58,6 +61,66 @@ def test_an_exercise_says_what_is_asked_and_gives_three_hints_and_a_solution(exe
     exec(capsys.readouterr().out, room)
     exercise.check(room[exercise.name], rng=0)
     assert capsys.readouterr().out == exercise.praise + "\n"
+
+
+@pytest.mark.parametrize("chapter", exercises.CHAPTERS)
+def test_the_words_of_a_chapter_are_those_of_its_exercises(chapter):
+    module = importlib.import_module(f"arkaq_edu.exercises.{chapter}")
+    names = [name for name, value in vars(module).items() if isinstance(value, Exercise)]
+    assert sorted(names) == sorted(exercise.name for exercise in exercises.CHAPTERS[chapter])
+    assert list(tomllib.loads(Path(module.__file__).with_suffix(".toml").read_text())) == names
+
+
+WORDS = """
+[twice]
+praise = "Right."
+hints = ["Add.", "x + ...", "x + x"]
+returns = ["double", "square"]
+points = 2
+
+[twice.wrong.double]
+"x + 2" = "you add two"
+
+[twice.tell.square]
+"found < 0" = "{found} is negative"
+otherwise = "{x} times {x} is {wanted}"
+"""
+TWICE = """
+from arkaq_edu.exercises.exercise import Part, exercise
+
+@exercise(double=Part(lambda rng: [(3.0,)]), square=Part())
+def twice(x):
+    return 2 * x, x * x
+"""
+
+
+@pytest.mark.parametrize(
+    ("right", "typo", "message"),
+    [
+        ("[twice]", "[twiec]", r"chapter\.toml: \[twice\] should have praise.* not nothing"),
+        ("hints", "hint", r"\[twice\] should have .*hints.* not praise, hint, returns"),
+        ("wrong.double", "wrong.duoble", r"\[twice\.wrong\.duoble\].* the steps double, square"),
+        ("wrong.double", "wrogn.double", r"\[twice\] should have .* not .*wrogn"),
+        ('"you add two"', "2", r"\[twice\.wrong\.double\] should be texts"),
+        ("x + 2", "x + (2", r"chapter\.toml: \[twice\.wrong\.double\]"),
+        ("found < 0", "found <", r"chapter\.toml: \[twice\.tell\.square\]"),
+        ("{wanted}", "{wanted", r"f-string"),
+    ],
+)
+def test_a_typo_in_the_words_is_found_when_they_are_read(
+    right, typo, message, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.syspath_prepend(tmp_path)
+    for name, words in (("rightchapter", WORDS), ("typochapter", WORDS.replace(right, typo))):
+        (tmp_path / f"{name}.py").write_text(TWICE)
+        (tmp_path / f"{name}.toml").write_text(words)
+    twice = importlib.import_module("rightchapter").twice
+    with pytest.raises(ExerciseError, match=r"3\.0 times 3\.0 is 9\.0"):
+        twice.check(lambda x: (2 * x, 7.0))
+    twice.check(twice.right)
+    assert capsys.readouterr().out == "Right.\n"
+    with pytest.raises((ValueError, SyntaxError), match=message):
+        importlib.import_module("typochapter")
 
 
 @pytest.mark.parametrize("exercise", [e for e in ALL if e.name not in ("rate", "epsilon_greedy")])
