@@ -11,14 +11,10 @@ __getattr__, __dir__, __all__ = _lazy.attach(
         "task": ["VIGILANCE", "load_agent", "make_task", "train"],
         "policies": ["at_random", "greedy", "planner"],
         "evaluation": [
-            "TRAJECTORY_STARTS",
-            "Trajectory",
-            "describe",
-            "evaluate",
-            "record_episode",
+            "TRAJECTORY_STARTS", "Trajectory", "describe", "evaluate", "record_episode",
             "trajectory",
         ],
         "sightings": ["calibrate", "load_sightings", "mean_nis", "patterns", "record_sightings"],
         "studies": ["load_study", "seed_runs", "study"],
     },
-)
+)  # fmt: skip

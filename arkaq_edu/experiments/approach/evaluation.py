@@ -21,18 +21,9 @@ from arkaq_edu.field.supervisor import CLOSE_REWARD, MAX_BALL_DISTANCE, random_p
 #: Where the ball is at the start of trajectories 1 to 11 (figures 5.17 to 5.30): distance (mm) and
 #: orientation (rad). The thesis only has pictures; these starts cover the field from edge to edge.
 TRAJECTORY_STARTS = (
-    (1200.0, 0.0),
-    (1500.0, 0.35),
-    (1500.0, -0.35),
-    (2200.0, 0.15),
-    (2200.0, -0.45),
-    (2600.0, 0.45),
-    (3000.0, -0.2),
-    (3200.0, 0.3),
-    (3600.0, -0.4),
-    (3900.0, 0.4),
-    (4050.0, 0.05),
-)
+    (1200.0, 0.0), (1500.0, 0.35), (1500.0, -0.35), (2200.0, 0.15), (2200.0, -0.45), (2600.0, 0.45),
+    (3000.0, -0.2), (3200.0, 0.3), (3600.0, -0.4), (3900.0, 0.4), (4050.0, 0.05),
+)  # fmt: skip
 
 
 def evaluate(policy: Policy, n: int = 500, seed: int = 0, *, near: float = 600.0) -> pd.DataFrame:
@@ -210,19 +201,13 @@ def record_episode(
 
 
 def _look(world, observation: NDArray[np.floating], info: dict[str, Any]) -> dict[str, float]:
-    (x, y, heading), (ball_x, ball_y) = world.pose, world.ball
+    names = (
+        "x", "y", "heading", "ball_x", "ball_y", "distance", "orientation", "seen_distance",
+        "seen_orientation",
+    )  # fmt: skip
     seen = observation[:2].tolist() if observation[2] else (math.nan, math.nan)
-    return {
-        "x": x,
-        "y": y,
-        "heading": heading,
-        "ball_x": ball_x,
-        "ball_y": ball_y,
-        "distance": info["distance"],
-        "orientation": info["orientation"],
-        "seen_distance": seen[0],
-        "seen_orientation": seen[1],
-    }
+    values = *world.pose, *world.ball, info["distance"], info["orientation"], *seen
+    return dict(zip(names, values, strict=True))
 
 
 def trajectory(number: int, agent: Arkaq | None = None) -> Trajectory:

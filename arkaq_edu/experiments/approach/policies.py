@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arkaq_edu.envs.ball_approach import FOOTSTEPS
-from arkaq_edu.experiments.policies import Policy, at_random, greedy
+from arkaq_edu.experiments.policies import Policy
+from arkaq_edu.experiments.policies import at_random as at_random
+from arkaq_edu.experiments.policies import greedy as greedy
 from arkaq_edu.field import pitch
-
-__all__ = ["at_random", "greedy", "planner"]
 
 
 def planner() -> Policy:

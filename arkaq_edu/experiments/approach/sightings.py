@@ -13,9 +13,7 @@ from arkaq_edu._paths import data_file
 from arkaq_edu.arkaq import Sensing, TrainingSettings
 from arkaq_edu.experiments import streams
 from arkaq_edu.experiments.approach.task import make_task
-from arkaq_edu.experiments.streams import mean_nis
-
-__all__ = ["calibrate", "load_sightings", "mean_nis", "patterns", "record_sightings"]
+from arkaq_edu.experiments.streams import mean_nis as mean_nis
 
 
 def record_sightings(n: int = 6500, seed: int = 0, period: int | None = None) -> pd.DataFrame:

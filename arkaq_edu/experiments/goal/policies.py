@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from arkaq_edu.arkaq import Sensing
 from arkaq_edu.envs.score_goal import KICK, TURN_LEFT, TURN_RIGHT
-from arkaq_edu.experiments.policies import Policy, at_random, greedy
-
-__all__ = ["at_random", "greedy", "planner"]
+from arkaq_edu.experiments.policies import Policy
+from arkaq_edu.experiments.policies import at_random as at_random
+from arkaq_edu.experiments.policies import greedy as greedy
 
 
 def planner() -> Policy:

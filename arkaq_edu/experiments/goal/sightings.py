@@ -15,20 +15,7 @@ from arkaq_edu.art import EuclideanART
 from arkaq_edu.envs.score_goal import TURN_LEFT, TURN_RIGHT
 from arkaq_edu.experiments import streams
 from arkaq_edu.experiments.goal.task import make_look_around
-from arkaq_edu.experiments.streams import mean_nis
-
-__all__ = [
-    "VIGILANCES",
-    "calibrate",
-    "cells",
-    "coverage",
-    "find_centers",
-    "load_center_counts",
-    "load_sightings",
-    "mean_nis",
-    "patterns",
-    "record_sightings",
-]
+from arkaq_edu.experiments.streams import mean_nis as mean_nis
 
 #: The vigilances of figures 5.35 to 5.37.
 VIGILANCES = (0.075, 0.06, 0.05)
