@@ -206,11 +206,14 @@ def covariance(name: str, value: ArrayLike, n: int) -> NDArray[np.float64]:
     return x
 
 
-def distribution(name: str, value: ArrayLike, *, axis: int = -1) -> NDArray[np.float64]:
-    """Return `value` as probabilities that are >= 0 and sum to one along `axis`.
+def distribution(
+    name: str, value: ArrayLike, shape: tuple[int | None, ...] | None = None, *, axis: int = -1
+) -> NDArray[np.float64]:
+    """Return `value` as probabilities of `shape` that are >= 0 and sum to one along `axis`.
 
     Sums are allowed to miss 1 by the square root of the precision of the given type (1.5e-8 for
-    float64, 3.5e-4 for float32). What is returned is divided by its sum.
+    float64, 3.5e-4 for float32). What is returned is divided by its sum, and what was returned once
+    is returned unchanged.
 
     Examples
     --------
@@ -220,21 +223,96 @@ def distribution(name: str, value: ArrayLike, *, axis: int = -1) -> NDArray[np.f
     Traceback (most recent call last):
     ValueError: b must sum to 1 along its last axis, got 1.1
     """
-    x = array(name, value, (None,) * np.ndim(value))  # type: ignore[arg-type]
+    x = array(name, value, shape or (None,) * np.ndim(value))
     if (x < 0).any():
         where = tuple(int(i) for i in np.argwhere(x < 0)[0])
         raise ValueError(f"{name} must hold probabilities >= 0, got {x[where]} at {where}")
-    given = getattr(value, "dtype", np.dtype(np.float64))
-    precision = np.finfo(given if given.kind == "f" else np.float64).eps
     sums = x.sum(axis=axis, keepdims=True)
-    off = np.abs(sums - 1) > math.sqrt(precision)
+    off = np.abs(sums - 1) > _slack(value)
     if off.any():
         which = "its last axis" if axis == -1 else f"axis {axis}"
         row = tuple(int(i) for i in np.argwhere(off.squeeze(axis))[0])
         place = f" at {row}" if row else ""
         got = f"{float(np.asarray(sums.squeeze(axis))[row]):.10g}"
         raise ValueError(f"{name} must sum to 1 along {which}, got {got}{place}")
-    return x / sums if (sums != 1).any() else x
+    rough = _rough(sums, np.count_nonzero(x, axis=axis, keepdims=True))
+    return x / np.where(rough, sums, 1) if rough.any() else x
+
+
+def _slack(value: Any) -> float:
+    """Return how far the sums of some probabilities may be from 1."""
+    dtype = value.dtype if hasattr(value, "dtype") else np.asarray(value).dtype
+    return math.sqrt(np.finfo(dtype if dtype.kind == "f" else np.float64).eps)
+
+
+def _rough(sums: NDArray[np.float64], counts: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Return which sums of so many probabilities are further from 1 than rounding explains.
+
+    A single probability has to be exactly 1, for a state that is never left is known by it.
+    """
+    return np.abs(sums - 1) > np.where(counts == 1, 0, np.finfo(float).eps * counts)
+
+
+def transitions(
+    name: str, value: Any, shape: tuple[int | None, int | None, int | None]
+) -> NDArray[np.float64] | list[Any]:
+    """Return distributions for each action and state, as an array or as a list of sparse matrices.
+
+    Parameters
+    ----------
+    name : str
+        The name of the argument.
+    value : array_like of shape (A, S, N), or a list of A scipy.sparse matrices of shape (S, N)
+        The distributions.
+    shape : tuple of int or None
+        The shape that is asked for; ``None`` stands for any length of at least 1.
+
+    Returns
+    -------
+    ndarray, or list of scipy.sparse.csr_array
+        A copy; sparse if `value` was.
+
+    Examples
+    --------
+    >>> from scipy.sparse import eye_array
+    >>> [stay] = transitions("T", [eye_array(3)], (1, 3, 3))
+    >>> stay.shape, stay.nnz
+    ((3, 3), 3)
+    """
+    if not (isinstance(value, (list, tuple)) and any(hasattr(M, "tocsr") for M in value)):
+        dense = distribution(name, value, shape).copy()
+        if not dense.size:
+            raise ValueError(f"{name} must have no axis of length 0, got shape {dense.shape}")
+        return dense
+    from scipy.sparse import csr_array
+
+    matrices: list[Any] = []
+    for a, M in enumerate(value):
+        given = (len(value), *np.shape(M))
+        wanted = (shape[0], *(shape[1:] if not matrices else matrices[0].shape))
+        fits = len(given) == 3 and all(
+            n > 0 and want in (None, n) for want, n in zip(wanted, given, strict=True)
+        )
+        if not fits:
+            asked = str(tuple("any" if n is None else n for n in wanted)).replace("'any'", "any")
+            raise ValueError(f"{name} must have shape {asked}, got {given}")
+        rows = csr_array(M) if hasattr(M, "tocsr") else csr_array(np.asarray(M))
+        slack = _slack(rows)
+        data = array(f"{name}[{a}]", rows.data, (None,))
+        rows = csr_array((data, rows.indices, rows.indptr), rows.shape, copy=True)
+        rows.sum_duplicates()
+        rows.eliminate_zeros()
+        if (rows.data < 0).any():
+            raise ValueError(f"{name} must hold probabilities >= 0, got {rows.data.min()} for {a}")
+        sums, counts = rows.sum(axis=1), np.diff(rows.indptr)
+        if (np.abs(sums - 1) > slack).any():
+            s = int(np.argmax(np.abs(sums - 1) > slack))
+            raise ValueError(
+                f"{name} must sum to 1 along its last axis, got {sums[s]:.10g} at {(a, s)}"
+            )
+        rows.data /= np.repeat(np.where(_rough(sums, counts), sums, 1), counts)
+        matrices.append(rows)
+    return matrices
 
 
 def generator(name: str, value: Any) -> np.random.Generator:
