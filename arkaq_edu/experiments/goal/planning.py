@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu import _checks
 from arkaq_edu.arkaq import Sensing
-from arkaq_edu.envs.score_goal import KICK, TURN_RIGHT, Start
+from arkaq_edu.envs.score_goal import KICK, TURN_LEFT, TURN_RIGHT, Start
 from arkaq_edu.experiments.goal.kicks import load_kick_trials
 from arkaq_edu.experiments.goal.task import Distance, start_of
 
@@ -33,6 +33,8 @@ STEPS = 30
 ORIENTATIONS = Sensing.goal().B[0][TURN_RIGHT] / STEPS * np.arange(-8 * STEPS, 8 * STEPS + 1)
 #: Turns after which an episode ends without a kick.
 PATIENCE = 30
+
+_SAME = 1e-9  # probabilities that differ by less count as equal
 
 
 def after_turns(values: Floats) -> tuple[Floats, Floats]:
@@ -187,11 +189,14 @@ def best_policy(
     patience = _checks.integer("patience", patience, 1)
     trials = load_kick_trials(goal_distance) if trials is None else trials
     chance = on_grid(trials.orientation, trials.goals / trials.kicks)
+    toward = np.where(ORIENTATIONS > 0, TURN_LEFT, TURN_RIGHT)
     actions = []
 
     def best_and_keep(Q: Floats) -> Floats:
-        # Of two actions that give the same, kick rather than turn.
-        actions.append(np.where(Q[KICK] >= best(Q) - 1e-12, KICK, Q.argmax(axis=0)))
+        # Of actions that give the same, prefer the kick, then the turn toward the goal.
+        as_good = Q >= best(Q) - _SAME
+        turn = np.where(follow(toward)(as_good), toward, 1 - toward)
+        actions.append(np.where(as_good[KICK], KICK, turn))
         return best(Q)
 
     value = goal_probability(chance, best_and_keep, patience)
