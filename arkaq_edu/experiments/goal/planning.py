@@ -194,9 +194,9 @@ def best_policy(
 
     def best_and_keep(Q: Floats) -> Floats:
         # Of actions that give the same, prefer the kick, then the turn toward the goal.
-        as_good = Q >= best(Q) - _SAME
-        turn = np.where(follow(toward)(as_good), toward, 1 - toward)
-        actions.append(np.where(as_good[KICK], KICK, turn))
+        V = best(Q) - _SAME
+        turn = np.where(follow(toward)(Q) >= V, toward, 1 - toward)
+        actions.append(np.where(Q[KICK] >= V, KICK, turn))
         return best(Q)
 
     value = goal_probability(chance, best_and_keep, patience)
