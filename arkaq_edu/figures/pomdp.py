@@ -13,19 +13,19 @@ b = [.25 .75]: a1 earns 0.25, a2 1.125; a1 is better for p(s1) > .6, on the righ
 
 from __future__ import annotations
 
-from itertools import pairwise
+from collections.abc import Iterator
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
-from matplotlib.patches import FancyArrowPatch, Rectangle
+from matplotlib.patches import FancyArrowPatch
 from matplotlib.text import Text
+from numpy.typing import ArrayLike
 
 from arkaq_edu import _checks
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.figures.drawing.diagram import Place, blank, wire, words
+from arkaq_edu.figures.drawing.diagram import Place, arrow, blank, wire, words, write
 from arkaq_edu.figures.drawing.plot import Plot
 from arkaq_edu.figures.drawing.style import POMDP_ACTIONS, probability
 from arkaq_edu.pomdp import (
@@ -40,7 +40,7 @@ from arkaq_edu.pomdp import (
     solved,
     tree_value,
     upper_surface,
-)
+)  # fmt: skip
 
 #: The plans of figure 2.17, two steps of the problem "two_state": an action, and one for each of
 #: z1, z2 and z3.
@@ -88,64 +88,45 @@ def figure_2_9(
     if tree is None:
         V = solve_pomdp(pomdp, 3)
         tree = V.tree(V.best(pomdp.start))
-    places, plans = _layout(tree, pomdp)
-    width = max(x for x, _ in places.values())
-    title = f"a policy tree of {tree.depth} steps: {len(plans)} nodes, an action in each"
-    limits = (-0.9, max(width, 4.5) + 0.6), (-1.5 * (tree.depth - 1) - 0.5, 0.5)
+    nodes = list(_nodes(tree, pomdp))
+    right = max(x for _, _, (x, _) in nodes)
+    title = f"a policy tree of {tree.depth} steps: {len(nodes)} nodes, an action in each"
+    limits = (-0.9, max(right, 4.5) + 0.6), (-1.5 * (tree.depth - 1) - 0.5, 0.5)
     ax = blank(ax, title, *limits, inch=0.9)
+    places = {name: place for name, _, place in nodes}
     parts, wires = {}, {}
-    for name, (x, y) in places.items():
-        parts[name] = _action(ax, (x, y), pomdp.actions[plans[name].action])
+    for name, plan, (x, y) in nodes:
+        parts[name] = _action(ax, (x, y), pomdp.actions[plan.action])
         if name:
             before, _, seen = name.rpartition(" ")
-            start = places[before]
-            wires[before, name] = wire(ax, (start[0], start[1] - 0.22), (x, y + 0.22))
-            words(ax, ((start[0] + 2 * x) / 3, (start[1] + 2 * y) / 3), seen)
+            from_x, from_y = places[before]
+            wires[before, name] = wire(ax, (from_x, from_y - 0.22), (x, y + 0.22))
+            words(ax, ((from_x + 2 * x) / 3, (from_y + 2 * y) / 3), seen)
     for step in range(tree.depth):
-        left = tree.depth - step
-        ax.text(-0.9, -1.5 * step, f"{left} to go", va="center", color=style.QUIET, fontsize=9)
+        write(ax, (-0.9, -1.5 * step), f"{tree.depth - step} to go", ha="left", color=style.QUIET)
     return Plot(ax, parts=parts, wires=wires)
 
 
-def _layout(tree: PolicyTree, pomdp: POMDP) -> tuple[dict[str, Place], dict[str, PolicyTree]]:
-    """Return the place and the plan of every node, by the observations that lead to it."""
-    places: dict[str, Place] = {}
-    plans: dict[str, PolicyTree] = {}
-    leaves = 0
-
-    def grow(name: str, plan: PolicyTree, y: float) -> float:
-        nonlocal leaves
-        plans[name] = plan
-        below = [
-            grow(f"{name} {seen}".strip(), branch, y - 1.5)
-            for seen, branch in zip(pomdp.observations, plan.branches, strict=False)
-        ]
-        x = float(np.mean(below)) if below else 0.3 + leaves
-        leaves += not below
-        places[name] = x, y
-        return x
-
-    grow("", tree, 0.0)
-    return places, plans
+def _nodes(
+    tree: PolicyTree, pomdp: POMDP, name: str = "", left: float = 0.3, y: float = 0.0
+) -> Iterator[tuple[str, PolicyTree, Place]]:
+    """Yield each node's observations so far, its plan, and its place above its own leaves."""
+    leaves = pomdp.n_observations ** (tree.depth - 1)
+    yield name, tree, (left + (leaves - 1) / 2, y)
+    for z, branch in enumerate(tree.branches):
+        seen = f"{name} {pomdp.observations[z]}".strip()
+        yield from _nodes(branch, pomdp, seen, left + z * leaves / pomdp.n_observations, y - 1.5)
 
 
 def _action(ax: Axes, place: Place, name: str) -> Text:
     color = POMDP_ACTIONS.get(name, style.QUIET)
     dark = np.dot(to_rgb(color), [0.3, 0.6, 0.1]) < 0.5
     box = {"boxstyle": "round,pad=0.35", "facecolor": color, "edgecolor": "white"}
-    return ax.text(
-        *place, name, ha="center", va="center", fontsize=9, bbox=box,
-        color="white" if dark else style.INK,
-    )  # fmt: skip
+    return write(ax, place, name, bbox=box, color="white" if dark else style.INK)
 
 
 def plot_surface(
-    V: ValueFunction,
-    pomdp: POMDP,
-    ax: Axes | None = None,
-    *,
-    ylim: tuple[float, float] | None = None,
-    title: str = "",
+    V: ValueFunction, pomdp: POMDP, ax: Axes | None = None, *, title: str = ""
 ) -> Plot:
     """Draw a value function over two states: a line for each plan, and their upper surface bold.
 
@@ -157,8 +138,6 @@ def plot_surface(
         The model whose names to use.
     ax : matplotlib.axes.Axes, optional
         Where to draw; by default on new axes.
-    ylim : tuple of two float, optional
-        The ends of the value axis.
     title : str
         What the picture states.
 
@@ -181,22 +160,18 @@ def plot_surface(
     """
     plans, p, values = upper_surface(V.alphas)
     ax = _belief_axes(ax, pomdp, title)
-    lines, named = {}, set()
-    for i, k in enumerate(plans):
+    lines, labels = {}, set()
+    for i, k in enumerate(plans, 1):
         action = pomdp.actions[V.actions[k]]
-        label = "_" if action in named else f"first {action}"
-        (lines[f"p{i + 1}"],) = ax.plot(
-            [0, 1], V.alphas[k][::-1], label=label, linewidth=1.2,
-            color=POMDP_ACTIONS.get(action, style.QUIET),
-        )  # fmt: skip
-        named.add(action)
+        color = POMDP_ACTIONS.get(action, style.QUIET)
+        (lines[f"p{i}"],) = ax.plot([0, 1], V.alphas[k][::-1], color=color, linewidth=1.2)
+        if action not in labels:
+            lines[f"p{i}"].set_label(f"first {action}")
+        labels.add(action)
+        mid = (p[i - 1] + p[i]) / 2
+        _tag(ax, (mid, np.interp(mid, p, values)), f"$p_{{{i}}}$", (0, 7))
     surface = _surface(ax, V)
-    for i, mid in enumerate((p[:-1] + p[1:]) / 2):
-        height = np.interp(mid, p, values)
-        _tag(ax, (mid, height), f"$p_{{{i + 1}}}$", (0, 7))
     ax.legend(frameon=False, fontsize=9)
-    if ylim:
-        ax.set_ylim(*ylim)
     return Plot(ax, lines=lines, surface=surface)
 
 
@@ -225,22 +200,18 @@ def figure_2_10(ax: Axes | None = None) -> Plot:
     """
     V = solved("tiger", 1)
     title = f"the value of the best of {len(V)} plans: piecewise linear and convex in the belief"
-    return plot_surface(V, problem("tiger"), ax, ylim=(-34, 16), title=title)
+    plot = plot_surface(V, problem("tiger"), ax, title=title)
+    plot.ax.set_ylim(-34, 16)
+    return plot
 
 
-def figure_2_11(
-    ax: Axes | None = None, *, horizon: int = 2, azimuth: float = 46.0, elevation: float = 38.0
-) -> Plot:
+def figure_2_11(ax: Axes | None = None) -> Plot:
     """Draw figure 2.11: a value function over three states, a bowl above the triangle of beliefs.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes, optional
         Where to draw; by default on new axes.
-    horizon : int
-        The number of steps to go in the problem "three_places".
-    azimuth, elevation : float
-        The direction from which it is seen, in degrees.
 
     Returns
     -------
@@ -257,22 +228,20 @@ def figure_2_11(
     >>> figure_2_11(Figure().subplots())
     7 planes make a bowl: 1.8 where nothing is known, 5.0 at the best corner
     """
-    pomdp, V = problem("three_places"), solved("three_places", horizon)
-    seen = bowl(V, azimuth, elevation)
+    pomdp, V = problem("three_places"), solved("three_places", 2)
+    seen = bowl(V, azimuth=46.0, elevation=38.0)
     title = (
         f"{len(V)} planes make a bowl: {V.value([1 / 3] * 3):.1f} where nothing is known, "
         f"{V.alphas.max():.1f} at the best corner"
     )
-    if ax is None:
-        _, ax = plt.subplots(figsize=(6.4, 5.4), layout="constrained")
-    ax = blank(ax, title, (-1.2, 1.2), (-1.55, 1.35))
+    ax = blank(ax, title, (-1.2, 1.2), (-1.55, 1.35), size=(6.4, 5.4))
     colors = [POMDP_ACTIONS[pomdp.actions[V.actions[k]]] for k in seen.plans]
     shadows = style.cells(seen.shadows, [style.paler(color, 0.55) for color in colors], ax)
     for (foot, top), name in zip(seen.corners, pomdp.states, strict=True):
         ax.plot(*np.transpose([foot, top]), ":", color=style.QUIET, linewidth=1, zorder=0.5)
-        ax.text(top[0], top[1] + 0.07, name, ha="center", va="bottom", color=style.INK)
+        write(ax, (top[0], top[1] + 0.07), name, va="bottom", fontsize=10)
     faces = style.cells(seen.faces, style.shaded(colors, seen.light), ax)
-    for name in dict.fromkeys(pomdp.actions[V.actions[k]] for k in range(len(V))):
+    for name in dict.fromkeys(pomdp.actions[a] for a in V.actions):
         ax.plot([], [], "s", color=POMDP_ACTIONS[name], label=name)
     ax.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, -0.02), ncols=4, fontsize=9)
     return Plot(ax, faces=faces, shadows=shadows)
@@ -305,31 +274,25 @@ def figure_2_12(ax: Axes | None = None) -> Plot:
     pomdp, V = problem("tiger"), solved("tiger", 1)
     plans, p, values = upper_surface(V.alphas)
     actions = [pomdp.actions[V.actions[k]] for k in plans]
-    first, *inner = (
-        f"{name} up to {probability(end)}" for name, end in zip(actions, p[1:-1], strict=False)
+    title = (
+        f"{actions[0]} for p({pomdp.states[0]}) < {probability(p[1])}, "
+        f"{actions[1]} up to {probability(p[2])}, then {actions[2]}"
     )
-    first = first.replace(" up to", f" for p({pomdp.states[0]}) <")
-    ax = _belief_axes(ax, pomdp, ", ".join([first, *inner, f"then {actions[-1]}"]))
+    ax = _belief_axes(ax, pomdp, title)
     (surface,) = ax.plot(p, values, color=style.INK, linewidth=3)
     low, high = -8.0, 14.0
-    intervals = {}
-    for i, (left, right) in enumerate(pairwise(p)):
-        color = POMDP_ACTIONS[actions[i]]
-        bar = Rectangle((left, low), right - left, 1.4, color=color, linewidth=0)
-        ax.add_patch(bar)
-        intervals[f"p{i + 1}"] = bar
-        mid = (left + right) / 2
-        side = "left" if mid < 0.1 else "right" if mid > 0.9 else "center"
-        at = {"left": left + 0.01, "right": right - 0.01, "center": mid}[side]
-        aside = {"left": (9, 3), "right": (-22, 3), "center": (0, 7)}[side]  # of a steep piece
+    colors = [POMDP_ACTIONS[name] for name in actions]
+    bars = ax.barh([low] * 3, np.diff(p), 1.4, p[:-1], align="edge", color=colors, linewidth=0)
+    # The outer pieces are steep and narrow: their names stand beside the line, and inside the axes.
+    named = (("left", 0.01, (9, 3)), ("center", 0.5, (0, 7)), ("right", 0.99, (-22, 3)))
+    for i, (side, x, aside) in enumerate(named):
         name = f"$a(p_{i + 1})$ = {actions[i]}"
-        white = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}  # over the dotted lines
-        ax.text(at, low + 1.9, name, ha=side, va="bottom", fontsize=9, bbox=white)
+        write(ax, (x, low + 1.9), name, ha=side, va="bottom", bbox=style.white(1.5))
+        mid = (p[i] + p[i + 1]) / 2
         _tag(ax, (mid, np.interp(mid, p, values)), f"$p_{i + 1}$", aside)
-    for end, height in zip(p[1:-1], values[1:-1], strict=True):
-        ax.plot([end, end], [low, height], ":", color=style.QUIET, linewidth=1, zorder=0.5)
+    _dotted(ax, p[1:-1], low, values[1:-1])
     ax.set(ylim=(low, high))
-    return Plot(ax, surface=surface, intervals=intervals)
+    return Plot(ax, surface=surface, intervals=dict(zip(("p1", "p2", "p3"), bars, strict=True)))
 
 
 def figure_2_14(ax: Axes | None = None, *, horizon: int = 6) -> Plot:
@@ -438,7 +401,7 @@ def figure_2_16(ax: Axes | None = None, *, p: float = 0.25) -> Plot:
     pomdp, V = problem("two_state"), solved("two_state", 1)
     b = np.array([p, 1 - p])
     even = upper_surface(V.alphas).p[1]
-    earned = dict(zip(pomdp.actions, expected_rewards(pomdp, b), strict=True))
+    earned = dict(zip(pomdp.actions, expected_rewards(pomdp, b).tolist(), strict=True))
     title = (
         f"b = [{probability(p)} {probability(1 - p)}]: "
         f"a1 earns {earned['a1']:.4g}, a2 {earned['a2']:.4g}; "
@@ -453,13 +416,9 @@ def figure_2_16(ax: Axes | None = None, *, p: float = 0.25) -> Plot:
         (lines[f"at {name}"],) = ax.plot(p, value, "o", color=color, markersize=8, zorder=4)
         _tag(ax, (p, value), f"{value:.4g}", (8, 6), color)
         end = int(line[1] > line[0])
-        ax.annotate(
-            name, (end, line[end]), (-8 if end else 8, 4), textcoords="offset points",
-            ha="right" if end else "left", va="bottom", color=color,
-        )  # fmt: skip
+        style.tag(ax, (end, line[end]), name, (-8 if end else 8, 4), color=color)
     surface = _surface(ax, V)
-    for x, top in ((p, max(earned.values())), (even, even)):
-        ax.plot([x, x], [0, top], ":", color=style.QUIET, linewidth=1, zorder=0.5)
+    _dotted(ax, [p, even], 0, [max(earned.values()), even])
     ax.set(ylim=(0, 1.65), xticks=[0, p, even, 1])
     return Plot(ax, lines=lines, surface=surface)
 
@@ -496,29 +455,22 @@ def figure_2_17(ax: Axes | None = None) -> Plot:
     pomdp = problem("two_state")
     alphas = np.array([tree_value(pomdp, plan) for plan in PLANS.values()])
     names = list(PLANS)
-    found = dominated(alphas)
-    told = [
-        f"p_{names[one.index]} is dominated only by "
-        + " and ".join(f"p_{names[k]}" for k in one.by)
-        + (" alone" if len(one.by) == 1 else " together")
-        for one in found
-    ]
-    title = ", ".join(told).replace(", p_d is dominated only by", ", p_d by")
+    joint, alone = found = dominated(alphas)
+    both = " and ".join(f"p_{names[k]}" for k in joint.by)
+    title = (
+        f"p_{names[joint.index]} is dominated only by {both} together, "
+        f"p_{names[alone.index]} by p_{names[alone.by[0]]} alone"
+    )
     ax = _belief_axes(ax, pomdp, title)
-    looks = {"a": ("-", style.INK), "b": ("-", style.INK), "c": ("-", style.OURS),
-             "d": ("-", style.ACTIONS["left"])}  # fmt: skip
+    colors = (style.INK, style.INK, style.OURS, style.ACTIONS["left"])
     lines = {}
-    for name, alpha in zip(names, alphas, strict=True):
-        dash, color = looks[name]
-        (lines[name],) = ax.plot([0, 1], alpha[::-1], dash, color=color, linewidth=1.8)
+    for name, alpha, color in zip(names, alphas, colors, strict=True):
+        (lines[name],) = ax.plot([0, 1], alpha[::-1], color=color, linewidth=1.8)
         _tag(ax, (1, alpha[0]), f"$p_{name}$", (5, 0), color)
-    joint = next(one for one in found if len(one.by) > 1)
     mixed = joint.weights @ alphas[list(joint.by)]
     (mixture,) = ax.plot([0, 1], mixed[::-1], "--", color=style.QUIET, linewidth=1.2)
-    shares = " + ".join(
-        f"{probability(weight)} $p_{names[k]}$"
-        for weight, k in zip(joint.weights, joint.by, strict=True)
-    )
+    weighted = zip(joint.weights, joint.by, strict=True)
+    shares = " + ".join(f"{probability(weight)} $p_{names[k]}$" for weight, k in weighted)
     _tag(ax, (0.3, mixed @ [0.3, 0.7]), shares, (0, 6), style.QUIET)
     ax.set(ylim=(0.4, 2.8))
     return Plot(ax, lines=lines, mixture=mixture, found=found)
@@ -561,9 +513,7 @@ def plot_policy_graph(V: ValueFunction, pomdp: POMDP, ax: Axes | None = None) ->
     # By slope, as the upper surface has them from left to right. A node need not be on it.
     row = sorted(reached, key=lambda k: alphas[k, 0] - alphas[k, 1])
     title = f"{len(row)} of {len(V)} nodes can be reached from the start"
-    if ax is None:
-        _, ax = plt.subplots(figsize=(8.4, 3.2), layout="constrained")
-    ax = blank(ax, title, (-0.7, 2 * len(row) - 1.3), (-1.5, 1.5))
+    ax = blank(ax, title, (-0.7, 2 * len(row) - 1.3), (-1.5, 1.5), size=(8.4, 3.2))
     parts, wires = {}, {}
     for i, k in enumerate(row):
         x = 2.0 * i
@@ -575,58 +525,46 @@ def plot_policy_graph(V: ValueFunction, pomdp: POMDP, ax: Axes | None = None) ->
             every = len(seen) == pomdp.n_observations
             name = "whatever" if every else " or ".join(pomdp.observations[z] for z in seen)
             words(ax, (x + ahead, 0.45 * ahead + 0.25 * np.sign(ahead)), name)
-    ax.text(
-        2.0 * row.index(reached[0]), -0.36, "start", ha="center", va="top", fontsize=9,
-        color=style.QUIET,
-    )  # fmt: skip
-    ends = (-0.7, "left"), (2 * len(row) - 1.3, "right")
-    for (x, side), name in zip(ends, pomdp.states[::-1], strict=True):
-        ax.text(x, -1.45, f"surely {name}", ha=side, va="bottom", color=style.QUIET, fontsize=9)
+    notes = (
+        ("start", (2.0 * row.index(reached[0]), -0.36), "center", "top"),
+        (f"surely {pomdp.states[1]}", (-0.7, -1.45), "left", "bottom"),
+        (f"surely {pomdp.states[0]}", (2 * len(row) - 1.3, -1.45), "right", "bottom"),
+    )
+    for text, place, ha, va in notes:
+        write(ax, place, text, ha=ha, va=va, color=style.QUIET)
     return Plot(ax, parts=parts, wires=wires)
 
 
 def _arc(ax: Axes, start: float, end: float) -> FancyArrowPatch:
     """Draw an arrow along a row: to the right above it, to the left below it."""
     side = float(np.sign(end - start))
-    arrow = FancyArrowPatch(
-        (start + 0.2 * side, 0.3 * side), (end - 0.3 * side, 0.3 * side),
-        connectionstyle="arc3,rad=-0.45", arrowstyle="-|>", mutation_scale=12,
-        color=style.INK, linewidth=1.1,
-    )  # fmt: skip
-    ax.add_patch(arrow)
-    return arrow
+    tail, head = (start + 0.2 * side, 0.3 * side), (end - 0.3 * side, 0.3 * side)
+    return arrow(ax, tail, head, -0.45, shrinkA=2, shrinkB=2, linewidth=1.1)
 
 
 def _belief_axes(ax: Axes | None, pomdp: POMDP, title: str) -> Axes:
     """Return axes of value over belief; p of the first state runs to the right."""
-    if pomdp.n_states != 2:
-        raise ValueError(f"pomdp must have two states, got {pomdp!r}")
-    if ax is None:
-        _, ax = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
-    ax = style.axes(ax, xlabel=f"p({pomdp.states[0]})", ylabel="value", title=title)
+    label = f"p({pomdp.states[0]})"
+    ax = style.axes(ax, xlabel=label, ylabel="value", title=title, size=(6.4, 4.0))
     ax.set(xlim=(0, 1), xticks=np.linspace(0, 1, 6))
     return ax
 
 
 def _surface(ax: Axes, V: ValueFunction) -> Line2D:
     """Draw the upper surface as a broad line under those of the plans."""
-    (line,) = ax.plot(
-        *upper_surface(V.alphas)[1:], color=style.INK, alpha=0.3, linewidth=6, zorder=1.5,
-        label="the best plan",
-    )  # fmt: skip
+    _, p, values = upper_surface(V.alphas)
+    (line,) = ax.plot(p, values, color=style.INK, alpha=0.3, linewidth=6, zorder=1.5)
+    line.set_label("the best plan")
     return line
 
 
-def _tag(
-    ax: Axes,
-    place: tuple[float, float],
-    text: str,
-    offset: tuple[float, float],
-    color: str = style.INK,
-) -> None:
-    """Write text beside a point, on white."""
-    white = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8}
-    ax.annotate(
-        text, place, offset, textcoords="offset points", color=color, fontsize=10, bbox=white,
-        ha="center" if not offset[0] else "left", va="bottom" if offset[1] else "center",
+def _dotted(ax: Axes, x: ArrayLike, low: float, high: ArrayLike) -> None:
+    ax.vlines(x, low, high, color=style.QUIET, linestyle=":", linewidth=1, zorder=0.5)
+
+
+def _tag(ax: Axes, place: Place, text: str, offset: Place, color: str = style.INK) -> None:
+    """Write text above or to the right of a point, on white."""
+    style.tag(
+        ax, place, text, offset, color=color, ha="left" if offset[0] else "center",
+        bbox=style.white(0.8, 0.8),
     )  # fmt: skip

@@ -21,18 +21,15 @@ from matplotlib.text import Text
 
 from arkaq_edu.arkaq.automata import DONE, Automaton
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.figures.drawing.diagram import Place, box
+from arkaq_edu.figures.drawing.diagram import Place, arrow, box, write
 from arkaq_edu.figures.drawing.plot import Plot
 
 WIDTH, HEIGHT = 1.3, 0.42
+_TIP = {"mutation_scale": 14, "shrinkB": 1}
 
 
 def plot_automaton(
-    automaton: Automaton,
-    places: Mapping[str, Place],
-    ax: Axes | None = None,
-    *,
-    title: str = "",
+    automaton: Automaton, places: Mapping[str, Place], ax: Axes | None = None, *, title: str = ""
 ) -> Plot:
     """Draw the states of an automaton, and an arrow for each step from one to another.
 
@@ -80,39 +77,25 @@ def plot_automaton(
     for (state, following), together in events.items():
         drawn = _labeled_arrow(ax, places[state], places[following], "\nor ".join(together))
         transitions |= {(state, event): drawn for event in together}
-    states = {}
-    for name in names:
-        states[name] = box(ax, places[name], name, width=WIDTH, height=HEIGHT)
+    states = {name: box(ax, places[name], name, width=WIDTH, height=HEIGHT) for name in names}
     if DONE in names:  # the end has a double border, as is usual for automata
         box(ax, places[DONE], width=WIDTH - 0.1, height=HEIGHT - 0.1)
-    x, y = places[automaton.start]
-    ax.add_patch(_arrow((x - WIDTH / 2 - 0.5, y), (x - WIDTH / 2, y)))
-    ax.plot(x - WIDTH / 2 - 0.5, y, "o", color=style.INK)
+    right, y = places[automaton.start][0] - WIDTH / 2, places[automaton.start][1]
+    arrow(ax, (right - 0.5, y), (right, y), **_TIP)
+    ax.plot(right - 0.5, y, "o", color=style.INK)
     ax.autoscale_view()
     return Plot(ax, f"{len(transitions)} transitions", states=states, transitions=transitions)
 
 
 def _labeled_arrow(ax: Axes, start: Place, end: Place, label: str) -> tuple[FancyArrowPatch, Text]:
     if start == end:  # a loop above the box
-        (x, y), top = start, HEIGHT / 2
-        arrow = _arrow((x - 0.3, y + top), (x + 0.3, y + top), "arc3,rad=-1.4")
-        middle = (x, y + top + 0.47)
+        (x, top), bend = (start[0], start[1] + HEIGHT / 2), -1.4
+        tail, head, middle = (x - 0.3, top), (x + 0.3, top), (x, top + 0.47)
     else:
-        tail, head = _rim(start, end), _rim(end, start)
-        arrow, middle = _arrow(tail, head), ((tail[0] + head[0]) / 2, (tail[1] + head[1]) / 2)
-    ax.add_patch(arrow)
-    white = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}
-    text = ax.text(
-        *middle, label, ha="center", va="center", fontsize=8, color=style.INK, bbox=white
-    )
-    return arrow, text
-
-
-def _arrow(tail: Place, head: Place, bend: str = "arc3") -> FancyArrowPatch:
-    return FancyArrowPatch(
-        tail, head, arrowstyle="-|>", mutation_scale=14, shrinkA=0, shrinkB=1,
-        connectionstyle=bend, color=style.INK,
-    )  # fmt: skip
+        tail, head, bend = _rim(start, end), _rim(end, start), 0.0
+        middle = (tail[0] + head[0]) / 2, (tail[1] + head[1]) / 2
+    drawn = arrow(ax, tail, head, bend, **_TIP)
+    return drawn, write(ax, middle, label, fontsize=8, bbox=style.white(1.5))
 
 
 def _rim(start: Place, end: Place) -> Place:

@@ -13,8 +13,8 @@ a look becomes a step
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, FancyArrowPatch, FancyBboxPatch, Rectangle, RegularPolygon
@@ -25,12 +25,20 @@ from numpy.typing import NDArray
 from arkaq_edu.figures.drawing import style
 
 Place = tuple[float, float]
+Point = Place | NDArray[np.float64]
 
 # How far circles, squares and diamonds reach from their center.
 _CIRCLE, _SQUARE, _DIAMOND = 0.34, 0.31, 0.42
+_SHAPE: dict[str, Any] = {"facecolor": style.CELLS[0], "edgecolor": style.INK}
+_TIP: dict[str, Any] = {
+    "arrowstyle": "-|>", "mutation_scale": 12, "shrinkA": 0, "shrinkB": 0, "color": style.INK,
+}  # fmt: skip
 
 
-def blank(ax: Axes | None, title: str, xlim: Place, ylim: Place, inch: float = 0.75) -> Axes:
+def blank(
+    ax: Axes | None, title: str, xlim: Place, ylim: Place, inch: float = 0.75,
+    size: tuple[float, float] | None = None,
+) -> Axes:  # fmt: skip
     """Return axes without a frame, with the same scale in both directions.
 
     Parameters
@@ -43,6 +51,8 @@ def blank(ax: Axes | None, title: str, xlim: Place, ylim: Place, inch: float = 0
         Ends of the axes.
     inch : float
         Size of a unit on new axes.
+    size : tuple of two float, optional
+        Width and height of new axes (inches), in place of `inch`.
 
     Examples
     --------
@@ -50,13 +60,24 @@ def blank(ax: Axes | None, title: str, xlim: Place, ylim: Place, inch: float = 0
     >>> blank(Figure().subplots(), "nothing", (0, 2), (0, 1)).get_aspect()
     1.0
     """
-    if ax is None:
-        size = inch * (xlim[1] - xlim[0]), inch * (ylim[1] - ylim[0]) + 0.3
-        _, ax = plt.subplots(figsize=size, layout="constrained")
-    style.axes(ax, title=title)
+    size = size or (inch * (xlim[1] - xlim[0]), inch * (ylim[1] - ylim[0]) + 0.3)
+    ax = style.axes(ax, title=title, size=size)
     ax.axis("off")
     ax.set(aspect="equal", xlim=xlim, ylim=ylim)
     return ax
+
+
+def write(ax: Axes, place: Point, text: str, **look: Any) -> Text:
+    """Write text with its middle at a place.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> write(Figure().subplots(), (0, 0), "S", weight="bold").get_weight()
+    'bold'
+    """
+    usual: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 9, "color": style.INK}
+    return ax.text(place[0], place[1], text, **(usual | look))
 
 
 def words(ax: Axes, place: Place, text: str, side: str = "center", color: str = style.INK) -> Text:
@@ -68,8 +89,7 @@ def words(ax: Axes, place: Place, text: str, side: str = "center", color: str = 
     >>> words(Figure().subplots(), (0, 0), "hidden", "left").get_text()
     'hidden'
     """
-    white = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
-    return ax.text(*place, text, ha=side, va="center", fontsize=9, color=color, bbox=white)
+    return write(ax, place, text, ha=side, color=color, bbox=style.white())
 
 
 def box(ax: Axes, place: Place, text: str = "", *, width: float = 1.1, height: float = 0.7) -> Text:
@@ -81,13 +101,12 @@ def box(ax: Axes, place: Place, text: str = "", *, width: float = 1.1, height: f
     >>> box(Figure().subplots(), (0, 0), "world").get_position()
     (0, 0)
     """
-    x, y = place
-    patch = FancyBboxPatch(
-        (x - width / 2, y - height / 2), width, height,
-        boxstyle="round,pad=0,rounding_size=0.15", facecolor=style.CELLS[0], edgecolor=style.INK,
-    )  # fmt: skip
-    ax.add_patch(patch)
-    return ax.text(x, y, text, ha="center", va="center", fontsize=9, color=style.INK)
+    corner, rounded = (
+        (place[0] - width / 2, place[1] - height / 2),
+        "round,pad=0,rounding_size=0.15",
+    )
+    ax.add_patch(FancyBboxPatch(corner, width, height, boxstyle=rounded, **_SHAPE))
+    return write(ax, place, text)
 
 
 def node(ax: Axes, place: Place, text: str) -> Text:
@@ -99,8 +118,8 @@ def node(ax: Axes, place: Place, text: str) -> Text:
     >>> node(Figure().subplots(), (0, 0), "$s$").get_text()
     '$s$'
     """
-    ax.add_patch(Circle(place, _CIRCLE, facecolor=style.CELLS[0], edgecolor=style.INK))
-    return ax.text(*place, text, ha="center", va="center", fontsize=10, color=style.INK)
+    ax.add_patch(Circle(place, _CIRCLE, **_SHAPE))
+    return write(ax, place, text, fontsize=10)
 
 
 def moment(ax: Axes, name: str, place: Place) -> Text:
@@ -115,13 +134,12 @@ def moment(ax: Axes, name: str, place: Place) -> Text:
     '$A_{t+1}$'
     """
     letter, index = name.split("_")
-    text = f"${letter}_{{{index}}}$"
-    if letter not in "AR":
-        return node(ax, place, text)
-    radius, turned = (_SQUARE * np.sqrt(2), np.pi / 4) if letter == "A" else (_DIAMOND, 0)
-    look = {"facecolor": style.CELLS[0], "edgecolor": style.INK}
-    ax.add_patch(RegularPolygon(place, 4, radius=radius, orientation=turned, **look))
-    return ax.text(*place, text, ha="center", va="center", fontsize=10, color=style.INK)
+    shapes = {
+        "A": RegularPolygon(place, 4, radius=_SQUARE * np.sqrt(2), orientation=np.pi / 4, **_SHAPE),
+        "R": RegularPolygon(place, 4, radius=_DIAMOND, **_SHAPE),
+    }
+    ax.add_patch(shapes.get(letter) or Circle(place, _CIRCLE, **_SHAPE))
+    return write(ax, place, f"${letter}_{{{index}}}$", fontsize=10)
 
 
 def link(ax: Axes, places: Mapping[str, Place], start: str, end: str) -> FancyArrowPatch:
@@ -136,12 +154,11 @@ def link(ax: Axes, places: Mapping[str, Place], start: str, end: str) -> FancyAr
     """
     one, other = np.array(places[start]), np.array(places[end])
     along = (other - one) / np.hypot(*(other - one))
-    (x, y), (to_x, to_y) = one + _rim(start, along), other + _rim(end, -along)
-    return wire(ax, (x, y), (to_x, to_y))
+    return wire(ax, one + _rim(start, along), other + _rim(end, -along))
 
 
 def _rim(name: str, along: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the way from the center of a `moment` to its rim, in a direction of length 1."""
+    """Return the step from the center of a `moment` to its rim, in a direction of length 1."""
     if name[0] == "A":
         return _SQUARE * along / np.abs(along).max()
     if name[0] == "R":
@@ -158,20 +175,35 @@ def frame(ax: Axes, corner: Place, width: float, height: float) -> Rectangle:
     >>> frame(Figure().subplots(), (0, 0), 2, 1).get_width()
     2
     """
-    drawn = Rectangle(corner, width, height, facecolor="none", edgecolor=style.QUIET)
-    drawn.set(linestyle="--", linewidth=0.8)
+    look: dict[str, Any] = {"facecolor": "none", "edgecolor": style.QUIET, "linestyle": "--"}
+    drawn = Rectangle(corner, width, height, linewidth=0.8, **look)
     ax.add_patch(drawn)
     return drawn
 
 
-def wire(ax: Axes, *corners: Place, sign: str = "", norm: bool = False) -> FancyArrowPatch:
+def arrow(ax: Axes, start: Place, end: Place, bend: float = 0.0, **look: Any) -> FancyArrowPatch:
+    """Draw an arrow, straight or bent to one side by a share of its length.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> arrow(Figure().subplots(), (0, 0), (1, 0), color="red").get_edgecolor()[:3]
+    (1.0, 0.0, 0.0)
+    """
+    look = _TIP | {"connectionstyle": f"arc3,rad={bend}"} | look
+    line = FancyArrowPatch(start, end, **look)
+    ax.add_patch(line)
+    return line
+
+
+def wire(ax: Axes, *corners: Point, sign: str = "", norm: bool = False) -> FancyArrowPatch:
     """Draw an arrow through corners.
 
     Parameters
     ----------
     ax : matplotlib.axes.Axes
         Where to draw.
-    *corners : tuple of two float
+    *corners : array_like of two float
         From the first to the last.
     sign : str
         A sign to write beside its end.
@@ -186,17 +218,15 @@ def wire(ax: Axes, *corners: Place, sign: str = "", norm: bool = False) -> Fancy
     >>> [text.get_text() for text in ax.texts]
     ['+']
     """
-    arrow = FancyArrowPatch(
-        path=Path(corners), arrowstyle="-|>", mutation_scale=12, shrinkA=0, shrinkB=0,
-        color=style.INK, linewidth=1.1, joinstyle="miter",
-    )  # fmt: skip
-    ax.add_patch(arrow)
-    (x, y), (end_x, end_y) = corners[-2:]
+    line = FancyArrowPatch(
+        path=Path(np.array(corners)), joinstyle="miter", **(_TIP | {"linewidth": 1.1})
+    )
+    ax.add_patch(line)
+    start, end = np.array(corners[-2:], dtype=float)
     if sign:
-        along = np.array([end_x - x, end_y - y]) / np.hypot(end_x - x, end_y - y)
+        along = (end - start) / np.hypot(*(end - start))
         beside = 0.22 * np.array([-along[1], along[0]]) * (1 if along[0] >= 0 else -1)
-        x, y = np.array([end_x, end_y]) - 0.4 * along + beside
-        ax.text(x, y, sign, ha="center", va="center", fontsize=10, color=style.INK)
+        write(ax, end - 0.4 * along + beside, sign, fontsize=10)
     if norm:
-        ax.plot((x + end_x) / 2, (y + end_y) / 2, "o", color=style.INK, markersize=7)
-    return arrow
+        ax.plot(*(start + end) / 2, "o", color=style.INK, markersize=7)
+    return line

@@ -28,6 +28,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import FillBetweenPolyCollection, PolyCollection
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.lines import Line2D
+from matplotlib.text import Annotation
 from numpy.typing import ArrayLike, NDArray
 
 INK = "#222222"
@@ -59,7 +60,10 @@ VIEW_ORIENTATION = (0.5, -0.5)
 VIEW_DISTANCE = (0.0, 4500.0)
 
 
-def axes(ax: Axes | None = None, *, xlabel: str = "", ylabel: str = "", title: str = "") -> Axes:
+def axes(
+    ax: Axes | None = None, *, xlabel: str = "", ylabel: str = "", title: str = "",
+    size: tuple[float, float] | None = None,
+) -> Axes:  # fmt: skip
     """Return axes in the house style: `ax` itself, or new ones if it is None.
 
     Parameters
@@ -70,6 +74,8 @@ def axes(ax: Axes | None = None, *, xlabel: str = "", ylabel: str = "", title: s
         The quantity along each axis, with its unit.
     title : str
         The fact that the picture states.
+    size : tuple of two float, optional
+        Width and height of new axes, in inches.
 
     Examples
     --------
@@ -78,7 +84,7 @@ def axes(ax: Axes | None = None, *, xlabel: str = "", ylabel: str = "", title: s
     'time (s)'
     """
     if ax is None:
-        _, ax = plt.subplots(layout="constrained")
+        _, ax = plt.subplots(figsize=size, layout="constrained")
     ax.set(xlabel=xlabel, ylabel=ylabel)
     ax.set_title(title, loc="left", fontsize="medium", color=INK)
     ax.spines[["top", "right"]].set_visible(False)
@@ -186,6 +192,43 @@ def cells(
     area = PolyCollection(list(polygons), facecolors=list(colors), edgecolors="white", lw=width)
     (ax or axes()).add_collection(area)
     return area
+
+
+def tag(
+    ax: Axes,
+    place: tuple[float, float],
+    text: str,
+    offset: tuple[float, float] = (0, 0),
+    **look: Any,
+) -> Annotation:
+    """Write text beside a place, on the side to which `offset` (points) leads from it.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> text = tag(Figure().subplots(), (0.5, 1.0), "best", (4, 0))
+    >>> text.get_text(), text.get_ha(), text.get_va()
+    ('best', 'left', 'center')
+    """
+    across, up = np.sign(offset).tolist()
+    usual: dict[str, Any] = {
+        "ha": {-1: "right", 0: "center", 1: "left"}[across],
+        "va": {-1: "top", 0: "center", 1: "bottom"}[up],
+        "color": INK,
+        "annotation_clip": False,
+    }
+    return ax.annotate(text, place, offset, textcoords="offset points", **(usual | look))
+
+
+def white(pad: float = 1.0, alpha: float = 1.0) -> dict[str, Any]:
+    """Return the white ground of a text that stands on lines: the `bbox` of the text.
+
+    Examples
+    --------
+    >>> white()["facecolor"]
+    'white'
+    """
+    return {"facecolor": "white", "edgecolor": "none", "pad": pad, "alpha": alpha}
 
 
 def dot_radius(n: int) -> float:
