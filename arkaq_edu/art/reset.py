@@ -7,6 +7,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu import _checks
 
+#: Cosines between `u` and the expectation for which figure 2.21 draws a curve.
+COSINES = (1.0, 0.8, 0.6, 0.4, 0.2, 0.0)
+
 
 def match_norm(cosine: ArrayLike, cdz: ArrayLike, c: float) -> NDArray[np.float64]:
     """Return the norm of r, which ART2 compares with the vigilance: the surface of figure 2.21.

@@ -16,26 +16,23 @@ once learned, vigilance 0.95 resets a cosine below 0.76 (c = 0.1, d = 0.9)
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PatchCollection
 from matplotlib.patches import Circle, Rectangle
-from matplotlib.text import Text
 from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu import _checks
-from arkaq_edu.art import learned_norm, match_norm, reset_fact
+from arkaq_edu.art.reset import COSINES, learned_norm, match_norm, reset_fact
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.figures.drawing.diagram import blank, box, frame, node, wire, words
+from arkaq_edu.figures.drawing.diagram import blank, box, frame, node, wire, words, write
 from arkaq_edu.figures.drawing.plot import Plot
 
 if TYPE_CHECKING:
     import pandas as pd
-
-#: Cosines between `u` and the expectation for which figure 2.21 draws a curve.
-COSINES = (1.0, 0.8, 0.6, 0.4, 0.2, 0.0)
 
 
 # Diagrams
@@ -43,17 +40,12 @@ COSINES = (1.0, 0.8, 0.6, 0.4, 0.2, 0.0)
 
 def figure_2_18(ax: Axes | None = None) -> Plot:
     """Draw figure 2.18, the two layers of an ART network and the traces between them."""
-    ax = blank(
-        ax,
-        "ART: every node of F1 is joined with every node of F2, both ways",
-        (-5.2, 5.5),
-        (-1.8, 3.0),
-    )
+    title = "ART: every node of F1 is joined with every node of F2, both ways"
+    ax = blank(ax, title, (-5.2, 5.5), (-1.8, 3.0))
     features = [(x, 0.0) for x in np.linspace(-2.2, 2.2, 5).tolist()]
     categories = [(x, 2.4) for x in np.linspace(-1.8, 1.8, 3).tolist()]
-    for x, y in features:
-        for to_x, to_y in categories:
-            ax.plot([x, to_x], [y, to_y], color="#cccccc", linewidth=0.8, zorder=0)
+    for ends in product(features, categories):
+        ax.plot(*zip(*ends, strict=True), color="#cccccc", linewidth=0.8, zorder=0)
     for height in (0.0, 2.4):
         box(ax, (0.0, height), width=6.0, height=0.8)
     for place in features + categories:
@@ -173,21 +165,20 @@ def figure_2_21(
     >>> float(plot.curves[0.0].get_ydata().min().round(3))
     0.746
     """
-    ax = style.axes(
-        ax, xlabel=r"$\|c\,d\,z_J\|$, from an uncommitted node to one that has learned all",
-        ylabel=r"$\|r\|$", title=reset_fact(c, d, vigilance),
-    )  # fmt: skip
+    xlabel = r"$\|c\,d\,z_J\|$, from an uncommitted node to one that has learned all"
+    ax = style.axes(ax, xlabel=xlabel, ylabel=r"$\|r\|$", title=reset_fact(c, d, vigilance))
     cdz = np.linspace(0, learned_norm(c, d), 101)
     curves = {}
     for cosine in COSINES:
         norm_r = match_norm(cosine, cdz, c)
         (curves[cosine],) = ax.plot(cdz, norm_r, color=style.INK, linewidth=1.3)
         name = r"$\cos(u, z_J)$ = 1" if cosine == 1 else f"{cosine:g}"
-        ax.annotate(name, (cdz[-1], norm_r[-1]), (5, 0), textcoords="offset points", va="center",
-                    fontsize=9, annotation_clip=False)  # fmt: skip
+        style.tag(ax, (cdz[-1], norm_r[-1]), name, (5, 0), fontsize=9)
     line = ax.axhline(vigilance, color=style.OURS, linestyle="--")
-    ax.text(0.03, 0.05, "reset below the dashed line", color=style.OURS, fontsize=9,
-            transform=ax.transAxes)  # fmt: skip
+    write(
+        ax, (0.03, 0.05), "reset below the dashed line", ha="left", va="baseline",
+        color=style.OURS, transform=ax.transAxes,
+    )  # fmt: skip
     ax.set(xlim=(0, cdz[-1]), ylim=(0.7, 1.02))
     return Plot(ax, curves=curves, vigilance=line)
 
@@ -196,13 +187,9 @@ def figure_2_21(
 
 
 def plot_letters(
-    patterns: ArrayLike,
-    names: Sequence[str] = (),
-    ax: Axes | None = None,
-    *,
-    columns: int = 5,
+    patterns: ArrayLike, names: Sequence[str] = (), ax: Axes | None = None, *, columns: int = 5,
     title: str = "",
-) -> Plot:
+) -> Plot:  # fmt: skip
     """Draw binary patterns side by side, each as a grid of points.
 
     Parameters
@@ -232,15 +219,11 @@ def plot_letters(
     """
     patterns = _checks.array("patterns", patterns, (None, None)) > 0
     grids = [(pattern, np.zeros_like(pattern)) for pattern in patterns]
-    return _grids(ax, grids, names, columns, title, below=1.4 if len(names) else 0.3)
+    return _grids(ax, title, grids, names, 1.4 if len(names) else 0.3, columns)
 
 
 def plot_search(
-    trace: pd.DataFrame,
-    names: Mapping[int, str] | None = None,
-    ax: Axes | None = None,
-    *,
-    columns: int = 5,
+    trace: pd.DataFrame, names: Mapping[int, str] | None = None, ax: Axes | None = None
 ) -> Plot:
     """Draw the search of ART1 for one pattern, step by step: the activity of F1, and the outcome.
 
@@ -254,8 +237,6 @@ def plot_search(
         Names for the nodes of F2.
     ax : matplotlib.axes.Axes, optional
         Where to draw; new axes by default.
-    columns : int
-        Width of a grid.
 
     Returns
     -------
@@ -282,17 +263,13 @@ def plot_search(
     resets = sum(caption.endswith("reset") for caption in captions)
     end = "no node is left" if len(grids) == 1 else f"{who} is in resonance"
     title = f"{resets} reset{'' if resets == 1 else 's'}, then {end}"
-    return _grids(ax, grids, captions, columns, title, below=3.2)
+    return _grids(ax, title, grids, captions, below=3.2)
 
 
 def _grids(
-    ax: Axes | None,
-    grids: Sequence[tuple[NDArray[np.bool_], NDArray[np.bool_]]],
-    captions: Sequence[str],
-    columns: int,
-    title: str,
-    below: float,
-) -> Plot:
+    ax: Axes | None, title: str, grids: Sequence[tuple[NDArray[np.bool_], NDArray[np.bool_]]],
+    captions: Sequence[str], below: float, columns: int = 5,
+) -> Plot:  # fmt: skip
     """Draw grids side by side: filled points for the first array, crosses for the second."""
     m = len(grids[0][0])
     if m % columns:
@@ -301,24 +278,18 @@ def _grids(
     width = len(grids) * pitch - 1.2
     ax = blank(ax, title, (-0.3, width), (-below, rows + 0.3), inch=min(0.25, 9 / width))
     points = np.array([(i % columns, rows - 1 - i // columns) for i in range(m)])
-    texts: list[Text] = []
     for k, (active, lost) in enumerate(grids):
         corners = points + np.array([k * pitch, 0])
-        ax.add_collection(
-            PatchCollection(
-                [Rectangle(tuple(corner), 1, 1) for corner in corners],
-                facecolors=[style.INK if on else "white" for on in active],
-                edgecolors="#bbbbbb", linewidths=0.6,
-            )
-        )  # fmt: skip
+        squares = PatchCollection([Rectangle(tuple(corner), 1, 1) for corner in corners])
+        colors = [style.INK if on else "white" for on in active]
+        squares.set(facecolors=colors, edgecolors="#bbbbbb", linewidths=0.6)
+        ax.add_collection(squares)
         ax.plot(*(corners[lost] + 0.5).T, "x", color=style.OURS, markersize=6, markeredgewidth=1.6)
-        if k < len(captions):
-            middle = k * pitch + columns / 2
-            text = ax.text(middle, -0.4, captions[k], ha="center", va="top", fontsize=9)
-            text.set_color(style.INK)
-            texts.append(text)
-    filled = [active for active, _ in grids]
-    return Plot(ax, f"{len(grids)} grids", grids=filled, words=texts)
+    texts = [
+        write(ax, (k * pitch + columns / 2, -0.4), caption, va="top")
+        for k, caption in enumerate(captions)
+    ]
+    return Plot(ax, f"{len(grids)} grids", grids=[active for active, _ in grids], words=texts)
 
 
 def plot_settling(trace: pd.DataFrame, theta: float, ax: Axes | None = None) -> Plot:
@@ -355,14 +326,13 @@ def plot_settling(trace: pd.DataFrame, theta: float, ax: Axes | None = None) -> 
     lines = ax.plot(np.vstack([given, u]), "-o", color=style.INK, markersize=3)
     style.measurements(np.zeros(len(given)), given, ax, markersize=7)
     ax.axhline(theta, color=style.QUIET, linestyle=":", linewidth=1)
-    ax.annotate("theta", (len(u), theta), (5, 0), textcoords="offset points", va="center",
-                color=style.QUIET, fontsize=9, annotation_clip=False)  # fmt: skip
+    style.tag(ax, (len(u), theta), "theta", (5, 0), color=style.QUIET, fontsize=9)
     node = trace.groupby("step")["node"].first()
     for step in node.index[node.diff().fillna(0) != 0]:
         ax.axvline(step + 0.5, color=style.OURS, linestyle="--", linewidth=1)
-        late = step > len(u) / 2
-        ax.annotate(f"F2 chooses node {node[step]}", (step + 0.5, 1.0), (-4 if late else 4, -6),
-                    xycoords=ax.get_xaxis_transform(), textcoords="offset points", fontsize=9,
-                    color=style.OURS, va="center", ha="right" if late else "left")  # fmt: skip
+        aside = -4 if step > len(u) / 2 else 4
+        look = {"va": "center", "color": style.OURS, "fontsize": 9}
+        look["xycoords"] = ax.get_xaxis_transform()
+        style.tag(ax, (step + 0.5, 1.0), f"F2 chooses node {node[step]}", (aside, -6), **look)
     ax.set(ylim=(-0.03, 1.05), xlim=(-0.3, len(u) + 0.1))
     return Plot(ax, lines=lines)

@@ -15,14 +15,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from arkaq_edu import _checks
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.figures.drawing.diagram import Place, blank, link, moment, wire, words
+from arkaq_edu.figures.drawing.diagram import Place, blank, link, moment, wire, words, write
 from arkaq_edu.figures.drawing.plot import Plot
 from arkaq_edu.figures.drawing.style import probability
 from arkaq_edu.pomdp import Calibration, problem, successors, trajectory
@@ -95,7 +94,7 @@ def figure_2_5(ax: Axes | None = None) -> Plot:
     title = "POMDP: the state is hidden; the belief is made of what was done and observed"
     ax = blank(ax, title, (-1.7, 8.0), (-0.9, 4.7))
     ax.axhspan(-0.6, 0.6, color=style.CELLS[1], zorder=-2)
-    ax.text(7.9, 0.0, "hidden", ha="right", va="center", color=style.QUIET)
+    write(ax, (7.9, 0.0), "hidden", ha="right", fontsize=10, color=style.QUIET)
     parts = {name: moment(ax, name, place) for name, place in PLACES.items()}
     wires = {(start, end): link(ax, PLACES, start, end) for start, end in CAUSES}
     (x, y), (to_x, _), over = PLACES["B_t"], PLACES["B_t+1"], PLACES["B_t"][1] + 0.95
@@ -111,14 +110,9 @@ def figure_2_5(ax: Axes | None = None) -> Plot:
 
 
 def plot_beliefs(
-    beliefs: ArrayLike,
-    states: Sequence[str],
-    names: Sequence[str],
-    ax: Axes | None = None,
-    *,
-    printed: Sequence[ArrayLike | None] | None = None,
-    title: str = "",
-) -> Plot:
+    beliefs: ArrayLike, states: Sequence[str], names: Sequence[str], ax: Axes | None = None, *,
+    printed: Sequence[ArrayLike | None] | None = None, title: str = "",
+) -> Plot:  # fmt: skip
     """Draw beliefs as bars over the states, one below the other.
 
     Parameters
@@ -156,21 +150,18 @@ def plot_beliefs(
     """
     n, S = len(names), len(states)
     b = _checks.distribution("beliefs", _checks.array("beliefs", beliefs, (n, S)))
-    if ax is None:
-        _, ax = plt.subplots(figsize=(6.4, 0.8 + 1.1 * n), layout="constrained")
-    ax = style.axes(ax, title=title)
+    ax = style.axes(ax, title=title, size=(6.4, 0.8 + 1.1 * n))
     x = np.arange(S, dtype=float)
     bars, marks = [], []
     for row, (belief, name) in enumerate(zip(b, names, strict=True)):
         foot = -_ROW * row
         bars.append(ax.bar(x, belief, 0.62, foot, color=style.OURS))
         ax.plot([-0.45, S - 0.55], [foot, foot], color=style.QUIET, linewidth=0.8)
-        ax.text(-0.6, foot + 0.3, name, ha="right", va="center", color=style.INK)
-        shown = None if printed is None else printed[row]
+        write(ax, (-0.6, foot + 0.3), name, ha="right", fontsize=10)
         for place, p in zip(x, belief, strict=True):
-            ax.text(place, foot + p + 0.04, probability(p), ha="center", va="bottom", fontsize=9)
-        if shown is not None:
-            marks.append(np.column_stack([x + 0.4, foot + np.asarray(shown)]))
+            write(ax, (place, foot + p + 0.04), probability(p), va="bottom", color="black")
+        if printed is not None and printed[row] is not None:
+            marks.append(np.column_stack([x + 0.4, foot + np.asarray(printed[row])]))
     ax.spines[["left", "bottom"]].set_visible(False)
     ax.tick_params(length=0)
     ax.set(xticks=x, xticklabels=states, yticks=[])
@@ -286,9 +277,8 @@ def figure_2_8(ax: Axes | None = None, *, p: float = 0.25) -> Plot:
     (mark,) = ax.plot(p, 0, "o", color=style.OURS, markersize=11)
     for x, text in ((0, "surely $s_2$"), (1, "surely $s_1$")):
         ax.plot(x, 0, "|", color=style.INK, markersize=14, markeredgewidth=2)
-        ax.annotate(text, (x, 0), (0, -22), textcoords="offset points", ha="center")
-    ax.annotate(f"{probability(p)}", (p, 0), (0, 10), textcoords="offset points", ha="center",
-                color=style.OURS)  # fmt: skip
+        style.tag(ax, (x, 0), text, (0, -22), va="baseline")
+    style.tag(ax, (p, 0), probability(p), (0, 10), va="baseline", color=style.OURS)
     return Plot(ax, line=line, belief=mark)
 
 
@@ -326,38 +316,30 @@ def figure_2_13(ax: Axes | None = None, *, p: float = 0.4) -> Plot:
     """
     pomdp = problem("two_state")
     p = _checks.number("p", p, 0, 1)
-    ax = _belief_line(
-        ax, "one belief, two actions, three observations: six beliefs, larger where likelier",
-        (-1.75, 1.75), (6.4, 3.4),
-    )  # fmt: skip
+    title = "one belief, two actions, three observations: six beliefs, larger where likelier"
+    ax = _belief_line(ax, title, (-1.75, 1.75), (6.4, 3.4))
     drawn = {}
     for a, row in enumerate((1, -1)):
-        color = style.POMDP_ACTIONS[pomdp.actions[a]]
+        action = pomdp.actions[a]
+        color = style.POMDP_ACTIONS[action]
         ax.plot([0, 1], [row, row], color=style.QUIET, linewidth=1)
-        ax.text(-0.04, row, pomdp.actions[a], ha="right", va="center", color=color)
+        write(ax, (-0.04, row), action, ha="right", fontsize=10, color=color)
         chances, beliefs = successors(pomdp, [p, 1 - p], a)
         for name, chance, x in zip(pomdp.observations, chances, beliefs[:, 0], strict=True):
             ax.plot([p, x], [0, row], color=color, linewidth=1, zorder=1)
-            (dot,) = ax.plot(x, row, "o", color=color, markersize=_LARGEST * chance**0.5)
-            drawn[pomdp.actions[a], name] = dot
-            ax.annotate(
-                f"{name}\n{probability(chance)}", (x, row), (0, 14 * row), fontsize=9,
-                textcoords="offset points", ha="center", va="bottom" if row > 0 else "top",
-            )  # fmt: skip
+            size = _LARGEST * chance**0.5
+            (drawn[action, name],) = ax.plot(x, row, "o", color=color, markersize=size)
+            style.tag(ax, (x, row), f"{name}\n{probability(chance)}", (0, 14 * row), fontsize=9)
     ax.plot([0, 1], [0, 0], color=style.QUIET, linewidth=1)
-    ax.text(-0.04, 0, "now", ha="right", va="center", color=style.INK)
+    write(ax, (-0.04, 0), "now", ha="right", fontsize=10)
     (start,) = ax.plot(p, 0, "o", color=style.QUIET, markersize=_LARGEST)
     return Plot(ax, start=start, successors=drawn)
 
 
 def plot_run(
-    beliefs: ArrayLike,
-    truth: ArrayLike,
-    misled: ArrayLike,
-    ax: Axes | None = None,
-    *,
+    beliefs: ArrayLike, truth: ArrayLike, misled: ArrayLike, ax: Axes | None = None, *,
     title: str = "",
-) -> Plot:
+) -> Plot:  # fmt: skip
     """Draw, step by step, how much of the belief lies on the hidden state.
 
     Parameters
@@ -394,14 +376,12 @@ def plot_run(
     n = len(b)
     truth = _checks.array("truth", truth, (n,)).astype(int)
     wrong = _checks.array("misled", misled, (n,)) > 0
-    if ax is None:
-        _, ax = plt.subplots(figsize=(7.4, 3.4), layout="constrained")
-    ax = style.axes(ax, xlabel="step", ylabel="belief in the hidden state", title=title)
+    ylabel = "belief in the hidden state"
+    ax = style.axes(ax, xlabel="step", ylabel=ylabel, title=title, size=(7.4, 3.4))
     k = np.arange(1, n + 1)
     moved = k[1:][np.diff(truth) != 0]
     changes = ax.vlines(moved, 0, 1, color=style.INK, linestyle=":", label="the state changes")
-    share = b[k - 1, truth]
-    (on_truth,) = ax.plot(k, share, color=style.OURS, lw=2, marker="o", markersize=3)
+    (on_truth,) = ax.plot(k, b[k - 1, truth], color=style.OURS, lw=2, marker="o", markersize=3)
     marks = style.measurements(k[wrong], np.full(wrong.sum(), 1.07), ax, label="a look misleads")
     ax.set(xlim=(0, n + 1), ylim=(0, 1.13), yticks=np.linspace(0, 1, 6).round(1))
     ax.legend(loc="best", framealpha=0.8, edgecolor="none")
@@ -440,17 +420,13 @@ def plot_calibration(
     >>> plot.lines["honest"].get_ydata()
     array([0.5, 0.9])
     """
-    if len(curves) > 2:
-        raise ValueError(f"curves must hold at most 2 names, got {[*curves]}")
     ax = style.axes(ax, xlabel="what the belief claims", ylabel="how often it is so", title=title)
     ax.plot([0, 1], [0, 1], "--", color=style.QUIET, linewidth=1)
-    lines, bands, least = {}, {}, 1.0
-    for (name, curve), color in zip(curves.items(), (style.OURS, style.INK), strict=False):
-        lines[name], bands[name] = style.band(
-            curve.claimed, curve.mean, curve.std, ax, color=color, marker="o", markersize=4,
-            label=name,
-        )  # fmt: skip
-        least = min(least, curve.claimed.min(), (curve.mean - curve.std).min())
+    drawn = {name: (curve.claimed, curve.mean, curve.std) for name, curve in curves.items()}
+    colors = (style.OURS, style.INK)
+    lines, bands = style.bands(ax, drawn, colors, marker="o", markersize=4)
+    lowest = [min(curve.claimed.min(), (curve.mean - curve.std).min()) for curve in curves.values()]
+    least = min(lowest, default=1.0)
     ends = (max(least - 0.03, 0.0), 1.01)
     ax.set(xlim=ends, ylim=ends, aspect="equal")
     ax.legend(frameon=False, loc="upper left")
@@ -461,9 +437,7 @@ def _belief_line(
     ax: Axes | None, title: str, ylim: tuple[float, float], size: tuple[float, float]
 ) -> Axes:
     """Return axes on which a belief over two states is a point: p(s1) runs to the right."""
-    if ax is None:
-        _, ax = plt.subplots(figsize=size, layout="constrained")
-    ax = style.axes(ax, xlabel="$p(s_1)$", title=title)
+    ax = style.axes(ax, xlabel="$p(s_1)$", title=title, size=size)
     ax.spines["left"].set_visible(False)
     ax.set(xlim=(-0.12, 1.06), ylim=ylim, yticks=[], xticks=np.linspace(0, 1, 5))
     return ax

@@ -15,21 +15,21 @@ from __future__ import annotations
 
 import copy
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.text import Annotation
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 
 from arkaq_edu import _checks
 from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.drawing.diagram import arrow, write
 from arkaq_edu.figures.drawing.plot import Plot
 from arkaq_edu.kalman import KalmanFilter, KalmanTrace
 
 # Marker, its size, and the distance from its center at which an arrow ends, in points.
 _SHAPES = {"vector": ("o", 40, 21), "matrix": ("s", 32, 19), "noise": ("*", 54, 15),
            "sum": ("o", 17, 9)}  # fmt: skip
+_TIP = {"mutation_scale": 10, "shrinkB": 1, "zorder": 3}
 
 #: The nodes of figure 2.22: label, kind, position.
 MODEL = {
@@ -91,24 +91,23 @@ def figure_2_22(ax: Axes | None = None) -> Plot:
     >>> sorted(start for start, end in plot.arrows if end == "moves")
     ['A', 'B', 'w']
     """
-    ax = _canvas(ax, "Kalman filter model: x_k = A x_k-1 + B u_k-1 + w, seen as z_k = H x_k + v")
-    ax.set(xlim=(-0.7, 10.9), ylim=(-2.4, 2.3))
+    title = "Kalman filter model: x_k = A x_k-1 + B u_k-1 + w, seen as z_k = H x_k + v"
+    ax = _canvas(ax, title, (-0.7, 10.9))
     ax.axvline(6.1, color=style.QUIET, linewidth=1, linestyle=":")
     for x, words, side in ((5.95, "hidden in the world", "right"), (6.25, "the sensor", "left")):
         ax.text(x, 2.05, words, ha=side, color=style.QUIET)
-    arrows = {}
+    arrows, nodes = {}, {}
     for start, end in FLOW:
-        one, other = MODEL[start], MODEL[end]
-        reaches = _SHAPES[one[1]][2], _SHAPES[other[1]][2]
-        arrows[start, end] = _arrow(ax, one[2], other[2], *reaches)
-    nodes = {}
+        (_, kind, tail), (_, other, head) = MODEL[start], MODEL[end]
+        gaps = {"shrinkA": _SHAPES[kind][2], "shrinkB": _SHAPES[other][2]}
+        arrows[start, end] = arrow(ax, tail, head, **(_TIP | gaps))
     for name, (words, kind, (x, y)) in MODEL.items():
         marker, size, _ = _SHAPES[kind]
         ax.plot(x, y, marker, ms=size, mfc=style.CELLS[0], mec=style.INK)
-        nodes[name] = ax.text(x, y - 0.03, words, ha="center", va="center", color=style.INK)
+        nodes[name] = write(ax, (x, y - 0.03), words, fontsize=10)
     for noise, covariance in (("w", "$Q$"), ("v", "$R$")):
         x, y = MODEL[noise][2]
-        ax.text(x + 0.55, y - 0.4, covariance, ha="center", va="center", color=style.INK)
+        write(ax, (x + 0.55, y - 0.4), covariance, fontsize=10)
     return Plot(ax, nodes=nodes, arrows=arrows)
 
 
@@ -136,39 +135,28 @@ def figure_2_23(ax: Axes | None = None) -> Plot:
     >>> plot.nodes["correct"].get_text().count("=")
     3
     """
-    ax = _canvas(ax, "Kalman filter cycle: predict, then correct by what is seen, and again")
-    ax.set(xlim=(-0.3, 11.3), ylim=(-2.4, 2.3))
-    places = {"predict": (2.3, 0.0), "correct": (8.0, 0.0)}
-    half = {"predict": 1.9, "correct": 2.6}
+    title = "Kalman filter cycle: predict, then correct by what is seen, and again"
+    ax = _canvas(ax, title, (-0.3, 11.3))
     nodes = {}
-    for name, equations in CYCLE.items():
-        x, y = places[name]
-        left, right = x - half[name], x + half[name]
-        ax.fill_between([left, right], y - 1.1, y + 1.1, fc=style.CELLS[0], ec=style.INK)
-        ax.text(x, y + 0.78, name, ha="center", va="center", weight="bold", color=style.INK)
-        words = "\n".join(equations)
-        nodes[name] = ax.text(
-            x, y - 0.25, words, ha="center", va="center", linespacing=2.2, fontsize=10,
-            color=style.INK,
-        )  # fmt: skip
-    out, back = places["predict"][0] + half["predict"], places["correct"][0] - half["correct"]
+    for name, x, half in (("predict", 2.3, 1.9), ("correct", 8.0, 2.6)):
+        ax.fill_between([x - half, x + half], -1.1, 1.1, fc=style.CELLS[0], ec=style.INK)
+        write(ax, (x, 0.78), name, weight="bold", fontsize=10)
+        nodes[name] = write(ax, (x, -0.25), "\n".join(CYCLE[name]), linespacing=2.2, fontsize=10)
+    out, back = 2.3 + 1.9, 8.0 - 2.6
     arrows = {
-        ("predict", "correct"): _arrow(ax, (out, 0.6), (back, 0.6)),
-        ("correct", "predict"): _arrow(ax, (back, -0.6), (out, -0.6)),
+        ("predict", "correct"): arrow(ax, (out, 0.6), (back, 0.6), **_TIP),
+        ("correct", "predict"): arrow(ax, (back, -0.6), (out, -0.6), **_TIP),
+        ("correct", "x, P"): arrow(ax, (8.0, -1.1), (8.0, -1.85), **_TIP),
     }
-    ax.text((out + back) / 2, -0.85, r"$k \to k+1$", ha="center", va="top", color=style.INK)
-    inputs = {
-        "x_0, P_0": (r"start: $\hat{x}_0,\ P_0$", (1.2, 2.0), "predict"),
-        "u": (r"action: $u_{k-1}$", (3.4, 2.0), "predict"),
-        "z": (r"sighting: $z_k$", (8.0, 2.0), "correct"),
-        "x, P": (r"estimate: $\hat{x}_k,\ P_k$", (8.0, -2.1), None),
-    }
-    for name, (words, (x, y), into) in inputs.items():
-        nodes[name] = ax.text(x, y, words, ha="center", va="center", color=style.INK)
-        if into:
-            arrows[name, into] = _arrow(ax, (x, 1.75), (x, 1.1))
-        else:
-            arrows["correct", name] = _arrow(ax, (x, -1.1), (x, -1.85))
+    for name, words, x, into in (
+        ("x_0, P_0", r"start: $\hat{x}_0,\ P_0$", 1.2, "predict"),
+        ("u", r"action: $u_{k-1}$", 3.4, "predict"),
+        ("z", r"sighting: $z_k$", 8.0, "correct"),
+    ):
+        nodes[name] = write(ax, (x, 2.0), words, fontsize=10)
+        arrows[name, into] = arrow(ax, (x, 1.75), (x, 1.1), **_TIP)
+    nodes["x, P"] = write(ax, (8.0, -2.1), r"estimate: $\hat{x}_k,\ P_k$", fontsize=10)
+    write(ax, ((out + back) / 2, -0.85), r"$k \to k+1$", va="top", fontsize=10)
     return Plot(ax, nodes=nodes, arrows=arrows)
 
 
@@ -222,10 +210,8 @@ def plot_predict_correct(
 
     spread = {name: (mean, np.sqrt(variance)) for name, (mean, variance) in found.items()}
     words = {name: f"{name} {m:.0f} ± {s:.3g}" for name, (m, s) in spread.items()}
-    ax = style.axes(
-        ax, xlabel="ball distance (mm)", ylabel="density (1/mm)",
-        title=f"{words['predicted']}, {words['seen']}: {words['corrected']}",
-    )  # fmt: skip
+    title = f"{words['predicted']}, {words['seen']}: {words['corrected']}"
+    ax = style.axes(ax, xlabel="ball distance (mm)", ylabel="density (1/mm)", title=title)
     low = min(mean - 3.2 * sigma for mean, sigma in spread.values())
     high = max(mean + 3.2 * sigma for mean, sigma in spread.values())
     x = np.linspace(low, high, 401)
@@ -238,10 +224,8 @@ def plot_predict_correct(
         color, dash, width = look[name]
         density = np.exp(-(((x - mean) / sigma) ** 2) / 2) / (sigma * np.sqrt(2 * np.pi))
         (curves[name],) = ax.plot(x, density, dash, color=color, linewidth=width)
-        ax.annotate(
-            name, (mean, density.max()), (0, 4), textcoords="offset points", ha="center",
-            color=color, bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
-        )  # fmt: skip
+        ground = style.white(0.5, 0.8)
+        style.tag(ax, (mean, density.max()), name, (0, 4), va="baseline", color=color, bbox=ground)
     style.measurements([z / kf.H[0, 0]], [0.0], ax, clip_on=False, zorder=5)
     ax.fill_between(x, curves["corrected"].get_ydata(), color=style.OURS, alpha=0.25, lw=0)
     ax.set(xlim=(low, high), ylim=(0, None), yticks=[])
@@ -249,14 +233,9 @@ def plot_predict_correct(
 
 
 def plot_track(
-    truth: ArrayLike,
-    Z: ArrayLike,
-    trace: KalmanTrace,
-    ax: Axes | None = None,
-    *,
-    axis: int = 0,
+    truth: ArrayLike, Z: ArrayLike, trace: KalmanTrace, ax: Axes | None = None, *, axis: int = 0,
     title: str = "",
-) -> Plot:
+) -> Plot:  # fmt: skip
     """Draw the truth, the sightings and the estimate along a track.
 
     Parameters
@@ -304,25 +283,12 @@ def plot_track(
     (line,) = ax.plot(k, truth, color=style.INK, linewidth=1.2, label="truth")
     marks = style.measurements(k, Z[:, axis], ax, markersize=4, label="sighting")
     ax.legend(frameon=False)
-    return Plot(
-        ax, f"a track of {T} looks", truth=line, sightings=marks, estimate=estimate, band=area
-    )
+    fact = f"a track of {T} looks"
+    return Plot(ax, fact, truth=line, sightings=marks, estimate=estimate, band=area)
 
 
-def _canvas(ax: Axes | None, title: str) -> Axes:
-    if ax is None:
-        _, ax = plt.subplots(figsize=(8.4, 3.6), layout="constrained")
-    style.axes(ax, title=title)
+def _canvas(ax: Axes | None, title: str, xlim: tuple[float, float]) -> Axes:
+    ax = style.axes(ax, title=title, size=(8.4, 3.6))
     ax.axis("off")
+    ax.set(xlim=xlim, ylim=(-2.4, 2.3))
     return ax
-
-
-def _arrow(
-    ax: Axes,
-    start: tuple[float, float],
-    end: tuple[float, float],
-    leave: float = 0.0,
-    reach: float = 1.0,
-) -> Annotation:
-    look = {"arrowstyle": "-|>", "shrinkA": leave, "shrinkB": reach, "color": style.INK}
-    return ax.annotate("", end, start, arrowprops=look)

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 
 from arkaq_edu import _checks
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.figures.drawing.diagram import blank, box, frame, wire, words
+from arkaq_edu.figures.drawing.diagram import arrow, blank, box, frame, wire, words
 from arkaq_edu.figures.drawing.plot import Plot
 from arkaq_edu.figures.drawing.style import CHAIN_COLORS, SERIES
 from arkaq_edu.mdp.optimality import CHAINS, best_chains, earnings
@@ -69,13 +69,11 @@ def figure_2_1(ax: Axes | None = None) -> Plot:
         "r": words(ax, (5.4, -0.5), "reward $r$"),
         "a": words(ax, (3.7, -1.65), "action $a$"),
     }
-    for place, text in (
-        ((3.9, 1.67), "indication: what of $s$ is seen"),
-        ((3.9, -1.03), "is it good or bad?"),
-        ((7.5, 1.1), "what learns"),
-        ((8.2, 1.8), "agent"),
-    ):
-        words(ax, place, text, color=style.QUIET)
+    for text, x, y in (
+        ("indication: what of $s$ is seen", 3.9, 1.67), ("is it good or bad?", 3.9, -1.03),
+        ("what learns", 7.5, 1.1), ("agent", 8.2, 1.8),
+    ):  # fmt: skip
+        words(ax, (x, y), text, color=style.QUIET)
     wires = {
         ("world", "I"): wire(ax, (0.85, 0.3), (2.8, 0.3), (2.8, 1.1), (3.5, 1.1)),
         ("world", "R"): wire(ax, (0.85, 0.3), (2.8, 0.3), (2.8, -0.5), (3.5, -0.5)),
@@ -177,18 +175,15 @@ def plot_regret(
     >>> plot.lines["always wrong"].get_ydata()
     array([1., 2.])
     """
-    if len(regrets) > len(SERIES):
-        raise ValueError(f"regrets must hold at most {len(SERIES)} strategies, got {[*regrets]}")
-    ax = style.axes(ax, xlabel="pulls so far", ylabel="regret so far (coins)", title=title)
-    lines, bands = {}, {}
-    for (name, values), color in zip(regrets.items(), SERIES, strict=False):
+    curves = {}
+    for name, values in regrets.items():
         players = _checks.array(name, values, (None, None))
         if len(players) < 20:
             raise ValueError(f"{name} must be played by at least 20, got {len(players)}")
         pulls = np.arange(1, players.shape[1] + 1)
-        lines[name], bands[name] = style.band(
-            pulls, players.mean(axis=0), players.std(axis=0), ax, color=color, label=name
-        )
+        curves[name] = pulls, players.mean(axis=0), players.std(axis=0)
+    ax = style.axes(ax, xlabel="pulls so far", ylabel="regret so far (coins)", title=title)
+    lines, bands = style.bands(ax, curves, SERIES)
     ax.set_ylim(bottom=0)
     ax.legend(frameon=False)
     return Plot(ax, lines=lines, bands=bands)
@@ -203,11 +198,7 @@ def _chain(ax: Axes, y: float, delay: int, reward: float, color: str) -> list[Fa
         arrows.append(wire(ax, *np.array([previous + rim, place - rim])))
         ax.add_patch(Circle((1.1 * k, y), 0.2, facecolor="white", edgecolor=style.INK))
     x = 1.1 * delay
-    loop = FancyArrowPatch(
-        (x + 0.12, y + 0.17), (x + 0.12, y - 0.17), connectionstyle="arc3,rad=-2.2",
-        arrowstyle="-|>", mutation_scale=12, shrinkA=0, shrinkB=0, color=color,
-    )  # fmt: skip
-    ax.add_patch(loop)
+    loop = arrow(ax, (x + 0.12, y + 0.17), (x + 0.12, y - 0.17), -2.2, color=color)
     words(ax, (x + 0.6, y), f"+{reward:g}", "left")
     return [*arrows, loop]
 

@@ -15,10 +15,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.bezier import BezierSegment
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch
 from matplotlib.path import Path
@@ -27,7 +28,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu import _checks
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.figures.drawing.diagram import Place, blank, link, moment, words
+from arkaq_edu.figures.drawing.diagram import Place, blank, link, moment, words, write
 from arkaq_edu.figures.drawing.floor import BALL, HOLE, SHADES, STONE, floor_polygons
 from arkaq_edu.figures.drawing.plot import Plot
 from arkaq_edu.mdp import MDP, Grid, example_mdp
@@ -80,12 +81,11 @@ def figure_2_3(ax: Axes | None = None) -> Plot:
         wires[start, end] = link(ax, places, start, end)
         if start[0] == "S" and end[0] == "A":
             wires[start, end].set(linestyle="--", color=style.QUIET)
-    for text, place in (
-        ("T", (_STEP * 1.5, 0.0)), ("policy", (_STEP + 0.7, -0.72)), ("R", (_STEP, -1.45)),
+    for text, x, y in (
+        ("T", _STEP * 1.5, 0.0), ("policy", _STEP + 0.7, -0.72), ("R", _STEP, -1.45),
+        ("...", -0.9, 0.0), ("...", 2 * _STEP + 0.9, 0.0),
     ):  # fmt: skip
-        words(ax, place, text, color=style.QUIET)
-    for x in (-0.9, 2 * _STEP + 0.9):
-        words(ax, (x, 0.0), "...", color=style.QUIET)
+        words(ax, (x, y), text, color=style.QUIET)
     for row, text in enumerate(("circle: state", "square: action", "diamond: reward")):
         words(ax, (7.8, -2.4 - 0.42 * row), text, "left", color=style.QUIET)
     return Plot(ax, parts=parts, wires=wires)
@@ -125,13 +125,9 @@ def figure_2_4(ax: Axes | None = None, *, mdp: MDP | None = None) -> Plot:
 
 
 def plot_transitions(
-    mdp: MDP,
-    ax: Axes | None = None,
-    *,
-    states: Sequence[str] | None = None,
-    actions: Sequence[str] | None = None,
-    places: ArrayLike | None = None,
-) -> Plot:
+    mdp: MDP, ax: Axes | None = None, *, states: Sequence[str] | None = None,
+    actions: Sequence[str] | None = None, places: ArrayLike | None = None,
+) -> Plot:  # fmt: skip
     """Draw any small MDP: states as circles, choices as dots, transitions as arrows.
 
     Parameters
@@ -184,29 +180,29 @@ def plot_transitions(
     (left, foot), (right, top) = np.min(taken, axis=0) - 1.2, np.max(taken, axis=0) + 1.2
     ax = blank(ax, title, (left, right), (foot, top))
     arrows = {
-        (s, a, t): _chance(ax, spots[s, a], places[t], 0.55 if s == t else 0.18, p, taken)
+        (s, a, t): _chance(ax, spots[s, a], places[t], mdp.T[a, s, t], s == t, taken)
         for s, a, t in lines
-        for p in [mdp.T[a, s, t]]
     }
-    rewards, choices, drawn = {}, {}, {}
+    rewards = {
+        pair: _spiral(ax, spot, mdp.R[pair], taken) for pair, spot in spots.items() if mdp.R[pair]
+    }
+    dot = {"boxstyle": "round,pad=0.25", "facecolor": style.CELLS[3], "edgecolor": style.INK}
+    choices = {}
     for (s, a), spot in spots.items():
         ax.plot(*zip(places[s], spot, strict=True), color=style.INK, linewidth=1, zorder=0)
-        if mdp.R[s, a]:
-            rewards[s, a] = _spiral(ax, spot, float(mdp.R[s, a]), taken)
-    dot = {"boxstyle": "round,pad=0.25", "facecolor": style.CELLS[3], "edgecolor": style.INK}
-    for (s, a), spot in spots.items():
-        choices[s, a] = _word(ax, spot, actions[a], fontsize=9, bbox=dot)
-    for s, (x, y) in enumerate(places):
+        choices[s, a] = write(ax, spot, actions[a], bbox=dot)
+    for s, place in enumerate(places):
         for radius in (_RADIUS, _RADIUS - 0.07) if mdp.ends[s] else (_RADIUS,):
-            ax.add_patch(Circle((x, y), radius, facecolor=style.CELLS[0], edgecolor=style.INK))
-        drawn[s] = _word(ax, places[s], states[s], fontsize=9)
+            circle = Circle(tuple(place), radius, facecolor=style.CELLS[0], edgecolor=style.INK)
+            ax.add_patch(circle)
+    drawn = {s: write(ax, place, states[s]) for s, place in enumerate(places)}
     return Plot(ax, states=drawn, choices=choices, arrows=arrows, rewards=rewards)
 
 
 def _circle(n: int) -> NDArray[np.float64]:
     """Return n places around a circle, the first at the upper left, next ones 3.4 apart."""
-    angle = np.pi * (0.75 - 2 * np.arange(n) / n)
-    return 1.7 / np.sin(np.pi / max(n, 2)) * np.column_stack([np.cos(angle), np.sin(angle)])
+    angles = np.pi * (0.75 - 2 * np.arange(n) / n)
+    return 1.7 / np.sin(np.pi / max(n, 2)) * style.directions(angles)
 
 
 def _choices(mdp: MDP, middle: NDArray[np.float64]) -> dict[tuple[int, int], NDArray[np.float64]]:
@@ -225,8 +221,8 @@ def _choices(mdp: MDP, middle: NDArray[np.float64]) -> dict[tuple[int, int], NDA
                 gap = (angles[a] - angles[b] + np.pi) % (2 * np.pi) - np.pi
                 if abs(gap) < apart:
                     angles[a] += 0.1 * np.copysign(apart - abs(gap), gap)
-        for a, angle in enumerate(angles):
-            spots[s, a] = middle[s] + _REACH * np.array([np.cos(angle), np.sin(angle)])
+        for a, direction in enumerate(style.directions(angles)):
+            spots[s, a] = middle[s] + _REACH * direction
     return spots
 
 
@@ -238,32 +234,28 @@ def _free(candidates: NDArray[np.float64], taken: list[NDArray[np.float64]]) -> 
 
 
 def _chance(
-    ax: Axes, start: NDArray[np.float64], end: NDArray[np.float64], bend: float, p: float,
+    ax: Axes, start: NDArray[np.float64], end: NDArray[np.float64], p: float, stays: bool,
     taken: list[NDArray[np.float64]],
 ) -> tuple[FancyArrowPatch, Text]:  # fmt: skip
     """Draw an arrow from a choice to a state, and its probability where there is room."""
     dx, dy = end - start
-    pull = (start + end) / 2 + bend * np.array([dy, -dx])
+    pull = (start + end) / 2 + (0.55 if stays else 0.18) * np.array([dy, -dx])
     rim = end - _RADIUS * (end - pull) / np.hypot(*(end - pull))
     curve = Path([start, pull, rim], [Path.MOVETO, Path.CURVE3, Path.CURVE3])
-    arrow = FancyArrowPatch(
-        path=curve, arrowstyle="-|>", mutation_scale=12, color=style.INK, linewidth=1
-    )
+    arrow = FancyArrowPatch(path=curve, arrowstyle="-|>", mutation_scale=12, color=style.INK)
     ax.add_patch(arrow)
-    u = np.array([[0.5, 0.42, 0.58, 0.34, 0.66, 0.2, 0.8]]).T
-    along = (1 - u) ** 2 * start + 2 * u * (1 - u) * pull + u**2 * rim
+    along = BezierSegment([start, pull, rim])(np.array([0.5, 0.42, 0.58, 0.34, 0.66, 0.2, 0.8]))
     place = _free(along[:5], taken)
     taken += list(along[5:])
-    white = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
-    return arrow, _word(ax, place, f"{p:.3g}", fontsize=8, bbox=white)
+    return arrow, write(ax, place, f"{p:.3g}", fontsize=8, bbox=style.white(0.8))
 
 
 def _spiral(
     ax: Axes, start: NDArray[np.float64], reward: float, taken: list[NDArray[np.float64]]
 ) -> tuple[Line2D, Text]:
     """Draw a coil that leaves a choice where there is room, and the reward at its end."""
-    around = np.linspace(0, 2 * np.pi, 25)[:-1]
-    end = _free(start + 1.08 * np.column_stack([np.cos(around), np.sin(around)]), taken)
+    around = style.directions(np.linspace(0, 2 * np.pi, 25)[:-1])
+    end = _free(start + 1.08 * around, taken)
     along = (end - start) / np.hypot(*(end - start))
     across = np.array([-along[1], along[0]])
     turn = np.linspace(0, 4 * 2 * np.pi, 120)
@@ -271,12 +263,7 @@ def _spiral(
     coil = start + np.outer(forth, along) + np.outer(0.09 * np.sin(turn), across)
     (line,) = ax.plot(*coil.T, color=style.OURS, linewidth=1.2)
     number = f"{reward:+.3g}".replace("-", "−")
-    return line, _word(ax, end, number, color=style.OURS, weight="bold")
-
-
-def _word(ax: Axes, place: NDArray[np.float64], text: str, **look: Any) -> Text:
-    look = {"ha": "center", "va": "center", "color": style.INK} | look
-    return ax.text(place[0], place[1], text, **look)
+    return line, write(ax, end, number, fontsize=10, color=style.OURS, weight="bold")
 
 
 # --- figures 4.3 and 4.4 --------------------------------------------------------------------------
@@ -430,22 +417,20 @@ def _procedure(procedure: Procedure, ax: Axes | None) -> Plot:
     rows = -0.4 * np.arange(len(runs)) - 0.1
     ax.text(0.0, 0.4, "as printed", weight="bold", color=style.INK)
     ax.text(right + 0.2, 0.4, "as it runs", weight="bold", color=style.OURS)
-    texts, lines, links = [], [], {}
+    plot = Plot(ax, printed=[], runs=[], links={})
     for i, (indent, text) in enumerate(printed):
         color = style.INK if i in used else style.QUIET
-        texts.append(words(ax, (0.3 * indent, rows[i]), text, "left", color))
+        plot.printed.append(words(ax, (0.3 * indent, rows[i]), text, "left", color))
         style.measurements([left], [rows[i]], ax, color=color, markersize=4)
     for j, line in enumerate(runs):
         color = style.OURS if line.changed else style.INK
-        lines.append(
-            words(ax, (right + 0.2 + 0.3 * line.indent, rows[j]), line.words, "left", color)
-        )
+        place = right + 0.2 + 0.3 * line.indent, rows[j]
+        plot.runs.append(words(ax, place, line.words, "left", color))
         ax.plot(right, rows[j], "o" if line.of else "P", color=color, markersize=5)
         for i in line.of:
-            (links[i, j],) = ax.plot(
-                [left + 0.06, right], rows[[i, j]], color=color, linewidth=1, zorder=0
-            )
-    return Plot(ax, printed=texts, runs=lines, links=links)
+            ends = [left + 0.06, right], rows[[i, j]]
+            (plot.links[i, j],) = ax.plot(*ends, color=color, linewidth=1, zorder=0)
+    return plot
 
 
 # --- values and arrows on a grid ------------------------------------------------------------------
@@ -512,14 +497,9 @@ def plot_grid(
 
 
 def plot_bands(
-    x: ArrayLike,
-    runs: Mapping[str, ArrayLike],
-    ax: Axes | None = None,
-    *,
-    xlabel: str = "",
-    ylabel: str = "",
-    title: str = "",
-) -> Plot:
+    x: ArrayLike, runs: Mapping[str, ArrayLike], ax: Axes | None = None, *, xlabel: str = "",
+    ylabel: str = "", title: str = "",
+) -> Plot:  # fmt: skip
     """Draw what up to three learners do over many runs: the mean, with one sigma.
 
     Parameters
@@ -538,7 +518,7 @@ def plot_bands(
     Returns
     -------
     Plot
-        With ``bands``, a line and an area by name.
+        With ``lines`` and ``bands`` by name.
 
     Raises
     ------
@@ -549,20 +529,18 @@ def plot_bands(
     --------
     >>> from matplotlib.figure import Figure
     >>> plot = plot_bands([1, 10], {"slow": [[3.0, 1.0], [5.0, 3.0]]}, Figure().subplots())
-    >>> plot.bands["slow"][0].get_ydata()
+    >>> plot.lines["slow"].get_ydata()
     array([4., 2.])
     """
-    looks = ((style.OURS, "-"), (style.ACTIONS["right"], "--"), (style.INK, ":"))
-    if len(runs) > len(looks):
-        raise ValueError(f"runs must hold at most {len(looks)} names, got {len(runs)}")
     x = _checks.array("x", x, (None,))
     ax = style.axes(ax, xlabel=xlabel, ylabel=ylabel, title=title)
     ax.set_xscale("log")
-    bands = {}
-    for (name, values), (color, dash) in zip(runs.items(), looks, strict=False):
+    curves = {}
+    for name, values in runs.items():
         found = _checks.array(name, values, (None, len(x)))
-        bands[name] = style.band(
-            x, found.mean(axis=0), found.std(axis=0), ax, color=color, linestyle=dash, label=name
-        )
+        curves[name] = x, found.mean(axis=0), found.std(axis=0)
+    lines, bands = style.bands(ax, curves, (style.OURS, style.ACTIONS["right"], style.INK))
+    for line, dash in zip(lines.values(), ("-", "--", ":"), strict=False):
+        line.set(linestyle=dash)
     ax.legend(frameon=False)
-    return Plot(ax, ", ".join(bands), bands=bands)
+    return Plot(ax, ", ".join(bands), lines=lines, bands=bands)

@@ -287,7 +287,8 @@ def figure_2_12(ax: Axes | None = None) -> Plot:
     named = (("left", 0.01, (9, 3)), ("center", 0.5, (0, 7)), ("right", 0.99, (-22, 3)))
     for i, (side, x, aside) in enumerate(named):
         name = f"$a(p_{i + 1})$ = {actions[i]}"
-        write(ax, (x, low + 1.9), name, ha=side, va="bottom", bbox=style.white(1.5))
+        ground = style.white(1.5)
+        write(ax, (x, low + 1.9), name, ha=side, va="bottom", color="black", bbox=ground)
         mid = (p[i] + p[i + 1]) / 2
         _tag(ax, (mid, np.interp(mid, p, values)), f"$p_{i + 1}$", aside)
     _dotted(ax, p[1:-1], low, values[1:-1])

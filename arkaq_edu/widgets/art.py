@@ -12,7 +12,7 @@ import numpy as np
 
 from arkaq_edu import art
 from arkaq_edu.art import LETTERS, learned_norm, match_norm, reset_cosine
-from arkaq_edu.figures.art import COSINES
+from arkaq_edu.art.reset import COSINES
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.widgets.explorer import Explorer
 from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Text

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyBboxPatch
 
 from arkaq_edu.art import ART1, ART2, LETTERS
+from arkaq_edu.art.reset import COSINES
 from arkaq_edu.figures import art
 from arkaq_edu.figures.drawing import style
 
@@ -102,7 +103,7 @@ def test_an_arrow_between_parts_ends_at_them(number):
 
 def test_figure_2_21_is_equation_2_47():
     plot = art.figure_2_21(fresh_axes(), c=0.2, d=0.8, vigilance=0.9)
-    assert list(plot.curves) == list(art.COSINES)
+    assert list(plot.curves) == list(COSINES)
     for cosine, curve in plot.curves.items():
         cdz, norm_r = curve.get_data()
         assert cdz[0] == 0 and cdz[-1] == pytest.approx(0.2 * 0.8 / 0.2)

@@ -162,7 +162,7 @@ def test_calibration_is_a_mean_and_a_deviation_over_seeds(ax):
     std = [np.std([0.5, 0.7, 0.6]), 0.1, np.std([0.9, 1.0, 0.8])]
     assert [top[0.55], top[0.75], top[0.95]] == pytest.approx(np.add([0.6, 0.7, 0.9], std))
     assert plot.lines["told"].get_color() == style.OURS
-    with pytest.raises(ValueError, match="curves must hold at most 2 names"):
+    with pytest.raises(ValueError, match="colors for at most 2 names"):
         belief.plot_calibration(dict.fromkeys("abc", told), ax)
 
 

@@ -108,7 +108,7 @@ def test_regret_is_drawn_as_mean_and_one_sigma(ax):
 def test_one_player_is_no_claim(ax):
     with pytest.raises(ValueError, match="UCB must be played by at least 20, got 19"):
         learning.plot_regret({"UCB": np.zeros((19, 5))}, ax)
-    with pytest.raises(ValueError, match="at most 5 strategies"):
+    with pytest.raises(ValueError, match="colors for at most 5 names"):
         learning.plot_regret({str(i): np.zeros((20, 5)) for i in range(6)}, ax)
     with pytest.raises(ValueError, match="UCB must"):
         learning.plot_regret({"UCB": [[np.nan]] * 20}, ax)

@@ -306,13 +306,13 @@ def test_a_grid_needs_a_value_a_state():
 def test_bands_are_the_mean_over_runs_and_one_sigma(ax):
     runs = np.random.default_rng(0).normal(size=(20, 5))
     plot = mdp.plot_bands([1, 2, 5, 10, 20], {"ours": runs, "other": runs + 3}, ax)
-    line, area = plot.bands["ours"]
+    line, area = plot.lines["ours"], plot.bands["ours"]
     assert line.get_ydata() == pytest.approx(runs.mean(axis=0))
     top = runs.mean(axis=0) + runs.std(axis=0)
     assert area.get_datalim(ax.transData).ymax == pytest.approx(top.max())
-    colors = [plot.bands[name][0].get_color() for name in ("ours", "other")]
+    colors = [plot.lines[name].get_color() for name in ("ours", "other")]
     assert len(set(colors)) == 2 and ax.get_xscale() == "log"
     with pytest.raises(ValueError, match=r"ours must have shape \(any, 2\), got \(20, 5\)"):
         mdp.plot_bands([1, 2], {"ours": runs}, ax)
-    with pytest.raises(ValueError, match="runs must hold at most 3 names, got 4"):
-        mdp.plot_bands([1, 2], dict.fromkeys("abcd", runs), ax)
+    with pytest.raises(ValueError, match="colors for at most 3 names"):
+        mdp.plot_bands(range(1, 6), dict.fromkeys("abcd", runs), ax)

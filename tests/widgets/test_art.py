@@ -11,7 +11,7 @@ from matplotlib.path import Path as Polygon
 from PIL import Image
 
 from arkaq_edu.art import ART1, LETTERS, learned_norm, match_norm, reset_fact
-from arkaq_edu.figures.art import COSINES
+from arkaq_edu.art.reset import COSINES
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.widgets import art as widgets
 from arkaq_edu.widgets import letters_explorer, resonance_explorer

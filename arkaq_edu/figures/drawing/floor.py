@@ -20,8 +20,7 @@ SHADES = tuple(
 #: The colors of walls, of holes and of the ball.
 STONE, HOLE, BALL = style.QUIET, style.INK, "#e8782a"
 _SQUARE = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
-_ANGLES = np.linspace(0, 2 * np.pi, 25)[:-1]
-_DISC = 0.5 + 0.3 * np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])
+_DISC = 0.5 + 0.3 * style.directions(np.linspace(0, 2 * np.pi, 25)[:-1])
 _ARROW = np.array(
     [[-0.3, -0.035], [0.08, -0.035], [0.08, -0.13], [0.32, 0], [0.08, 0.13], [0.08, 0.035],
      [-0.3, 0.035]]

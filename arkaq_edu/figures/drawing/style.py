@@ -19,7 +19,7 @@ Examples
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -132,14 +132,9 @@ def measurements(x: ArrayLike, y: ArrayLike, ax: Axes | None = None, **style: An
 
 
 def band(
-    x: ArrayLike,
-    mean: ArrayLike,
-    std: ArrayLike,
-    ax: Axes | None = None,
-    *,
-    color: str = OURS,
+    x: ArrayLike, mean: ArrayLike, std: ArrayLike, ax: Axes | None = None, *, color: str = OURS,
     **style: Any,
-) -> tuple[Line2D, FillBetweenPolyCollection]:
+) -> tuple[Line2D, FillBetweenPolyCollection]:  # fmt: skip
     """Draw a mean as a line, in a band of one standard deviation to each side.
 
     Parameters
@@ -165,6 +160,33 @@ def band(
     (line,) = ax.plot(x, mean, color=color, **style)
     area = ax.fill_between(x, mean - std, mean + std, color=color, alpha=0.25, linewidth=0)
     return line, area
+
+
+def bands(
+    ax: Axes, curves: Mapping[str, tuple[ArrayLike, ArrayLike, ArrayLike]], colors: Sequence[str],
+    **look: Any,
+) -> tuple[dict[str, Line2D], dict[str, FillBetweenPolyCollection]]:  # fmt: skip
+    """Draw a `band` for each curve (x, mean, standard deviation), in a color of its own.
+
+    Raises
+    ------
+    ValueError
+        If there are more curves than colors.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> curves = {"slow": ([0, 1], [2, 3], [0.5, 0.5]), "fast": ([0, 1], [4, 5], [0.5, 0.5])}
+    >>> lines, areas = bands(Figure().subplots(), curves, SERIES)
+    >>> lines["fast"].get_ydata()
+    array([4., 5.])
+    """
+    if len(curves) > len(colors):
+        raise ValueError(f"there are colors for at most {len(colors)} names, got {[*curves]}")
+    lines, areas = {}, {}
+    for (name, (x, mean, std)), color in zip(curves.items(), colors, strict=False):
+        lines[name], areas[name] = band(x, mean, std, ax, color=color, label=name, **look)
+    return lines, areas
 
 
 def cells(
@@ -214,7 +236,6 @@ def tag(
     usual: dict[str, Any] = {
         "ha": {-1: "right", 0: "center", 1: "left"}[across],
         "va": {-1: "top", 0: "center", 1: "bottom"}[up],
-        "color": INK,
         "annotation_clip": False,
     }
     return ax.annotate(text, place, offset, textcoords="offset points", **(usual | look))
@@ -229,6 +250,17 @@ def white(pad: float = 1.0, alpha: float = 1.0) -> dict[str, Any]:
     'white'
     """
     return {"facecolor": "white", "edgecolor": "none", "pad": pad, "alpha": alpha}
+
+
+def directions(angles: ArrayLike) -> NDArray[np.float64]:
+    """Return unit vectors at angles (rad), shape (n, 2).
+
+    Examples
+    --------
+    >>> directions([0, np.pi / 2]).round(3).tolist()
+    [[1.0, 0.0], [0.0, 1.0]]
+    """
+    return np.column_stack([np.cos(angles), np.sin(angles)])
 
 
 def dot_radius(n: int) -> float:
