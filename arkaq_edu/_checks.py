@@ -121,11 +121,17 @@ def integers(
 
 
 def array(
-    name: str, value: ArrayLike, shape: tuple[int | None, ...], *, allow_nan: bool = False
+    name: str,
+    value: ArrayLike,
+    shape: tuple[int | None, ...] | None,
+    *,
+    allow_nan: bool = False,
+    allow_minus_infinity: bool = False,
 ) -> NDArray[np.float64]:
-    """Return `value` as a float64 array of `shape` (``None`` stands for any length).
+    """Return `value` as a float64 array of `shape` (``None`` stands for any length, or any shape).
 
-    With `allow_nan` a missing entry is returned as NaN.
+    With `allow_nan` a missing entry is returned as NaN. With `allow_minus_infinity` an entry may
+    be -inf, which marks an action that is not allowed.
 
     Examples
     --------
@@ -136,18 +142,20 @@ def array(
     array([ 3., nan])
     """
     x = value if type(value) is np.ndarray and value.dtype == np.float64 else _floats(name, value)
-    fits = x.shape == shape or (
+    fits = shape is None or x.shape == shape or (
         x.ndim == len(shape)
         and all(want is None or want == have for want, have in zip(shape, x.shape, strict=True))
     )
     if not fits:
-        wanted = str(tuple("any" if s is None else s for s in shape)).replace("'any'", "any")
+        wanted = str(tuple("any" if s is None else s for s in shape or ())).replace("'any'", "any")
         raise ValueError(f"{name} must have shape {wanted}, got {x.shape}")
     # A NaN compares as False, so a missing entry is not "too large".
     bad = np.abs(x) > LARGEST if allow_nan else ~(np.abs(x) <= LARGEST)
+    if allow_minus_infinity:
+        bad &= x != -np.inf
     if np.count_nonzero(bad):  # faster than bad.any() on a small array
         where = tuple(int(i) for i in np.argwhere(bad)[0])
-        allowed = "finite numbers or NaN" if allow_nan else "finite numbers"
+        allowed = "finite numbers" + " or NaN" * allow_nan + " or -inf" * allow_minus_infinity
         if math.isfinite(x[where]):
             allowed = f"numbers of at most {LARGEST:g} in magnitude"
         raise ValueError(f"{name} must hold {allowed}, got {x[where]} at {where}")
@@ -223,7 +231,7 @@ def distribution(
     Traceback (most recent call last):
     ValueError: b must sum to 1 along its last axis, got 1.1
     """
-    x = array(name, value, shape or (None,) * np.ndim(value))
+    x = array(name, value, shape)
     if (x < 0).any():
         where = tuple(int(i) for i in np.argwhere(x < 0)[0])
         raise ValueError(f"{name} must hold probabilities >= 0, got {x[where]} at {where}")

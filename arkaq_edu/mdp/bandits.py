@@ -8,12 +8,13 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._checks import array, integer, integers, number
-from arkaq_edu.mdp.choice import argmax_shared, softmax
+from arkaq_edu._checks import affordable, array, generator, integer, integers, number, shown
+from arkaq_edu._frozen import Frozen
+from arkaq_edu.mdp.choice import argmax_shared, draw_best, softmax
 from arkaq_edu.mdp.schedules import Schedule, value_at
 
 
-class Bandit:
+class Bandit(Frozen):
     """k gambling machines. Machine i pays 1 with probability p_i, and otherwise 0.
 
     Parameters
@@ -48,9 +49,9 @@ class Bandit:
     def __init__(self, p: ArrayLike) -> None:
         self.p = array("p", p, (None,)).copy()
         if not self.p.size or (self.p < 0).any() or (self.p > 1).any():
-            raise ValueError(f"p must hold at least one probability in [0, 1], got {self.p}")
-        self.p.setflags(write=False)
+            raise ValueError(f"p must hold at least one probability in [0, 1], got {shown(p)}")
         self.best = float(self.p.max())
+        self.freeze()
 
     def pull(self, arms: ArrayLike, rng: np.random.Generator | int) -> NDArray[np.float64]:
         """Pull machines and return what each pull pays, 0.0 or 1.0.
@@ -73,7 +74,7 @@ class Bandit:
             If a machine does not exist.
         """
         p = self.p[integers("arms", arms, 0, len(self.p) - 1)]
-        return (np.random.default_rng(rng).random(p.shape) < p).astype(np.float64)
+        return (generator("rng", rng).random(p.shape) < p).astype(np.float64)
 
 
 class Strategy(Protocol):
@@ -86,12 +87,12 @@ class Strategy(Protocol):
 
         Parameters
         ----------
-        counts : ndarray of int, shape (N, k)
+        counts : array_like of int, shape (N, k)
             How often each player has pulled each machine.
-        means : ndarray, shape (N, k)
+        means : array_like, shape (N, k)
             What each machine has paid that player on average; 0 if it was never pulled.
         rng : numpy.random.Generator
-            The random numbers.
+            The random numbers; for the strategies of this module, also a seed.
 
         Returns
         -------
@@ -114,6 +115,7 @@ class Random:
         self, counts: NDArray[np.int64], means: NDArray[np.float64], rng: np.random.Generator
     ) -> NDArray[np.intp]:
         """Choose a machine for each player."""
+        counts, means, rng = _told(counts, means, rng)
         return rng.integers(counts.shape[1], size=len(counts))
 
 
@@ -141,12 +143,13 @@ class EpsilonGreedy:
 
     def __post_init__(self) -> None:
         if not callable(self.epsilon):
-            number("epsilon", self.epsilon, 0, 1)
+            object.__setattr__(self, "epsilon", number("epsilon", self.epsilon, 0, 1))
 
     def choose(
         self, counts: NDArray[np.int64], means: NDArray[np.float64], rng: np.random.Generator
     ) -> NDArray[np.intp]:
         """Choose a machine for each player."""
+        counts, means, rng = _told(counts, means, rng)
         epsilon = number("epsilon", value_at(self.epsilon, _pull(counts)), 0, 1)
         explore = rng.random(len(counts)) < epsilon
         return np.where(explore, Random().choose(counts, means, rng), argmax_shared(means, rng))
@@ -180,14 +183,16 @@ class Boltzmann:
 
     def __post_init__(self) -> None:
         if not callable(self.temperature):
-            number("temperature", self.temperature, 0, open_low=True)
+            T = number("temperature", self.temperature, 0, open_low=True)
+            object.__setattr__(self, "temperature", T)
 
     def choose(
         self, counts: NDArray[np.int64], means: NDArray[np.float64], rng: np.random.Generator
     ) -> NDArray[np.intp]:
         """Choose a machine for each player."""
+        counts, means, rng = _told(counts, means, rng)
         below = softmax(means, value_at(self.temperature, _pull(counts))).cumsum(axis=1)
-        return (rng.random((len(counts), 1)) * below[:, -1:] >= below).sum(axis=1)
+        return (rng.random((len(counts), 1)) >= below / below[:, -1:]).sum(axis=1)
 
 
 @dataclass(frozen=True)
@@ -203,7 +208,7 @@ class UCB:
     Raises
     ------
     ValueError
-        If `c` is negative or not finite.
+        If `c` is out of range.
 
     References
     ----------
@@ -219,15 +224,26 @@ class UCB:
     c: float = 2**0.5
 
     def __post_init__(self) -> None:
-        number("c", self.c, 0, open_high=True)
+        object.__setattr__(self, "c", number("c", self.c, 0, open_high=True))
 
     def choose(
         self, counts: NDArray[np.int64], means: NDArray[np.float64], rng: np.random.Generator
     ) -> NDArray[np.intp]:
         """Choose a machine for each player."""
+        counts, means, rng = _told(counts, means, rng)
         n = np.maximum(counts.sum(axis=1, keepdims=True), 1)
         margin = self.c * np.sqrt(np.log(n) / np.maximum(counts, 1))
-        return argmax_shared(np.where(counts > 0, means + margin, np.inf), rng)
+        return draw_best(np.where(counts > 0, means + margin, np.inf), rng)
+
+
+def _told(
+    counts: ArrayLike, means: ArrayLike, rng: np.random.Generator | int
+) -> tuple[NDArray[np.int64], NDArray[np.float64], np.random.Generator]:
+    """Return what a strategy is told, checked."""
+    counts = integers("counts", counts, 0)
+    if counts.ndim != 2 or not counts.size:
+        raise ValueError(f"counts must have shape (N, k), each at least 1, got {counts.shape}")
+    return counts, array("means", means, counts.shape), generator("rng", rng)
 
 
 def _pull(counts: NDArray[np.int64]) -> int:
@@ -283,7 +299,8 @@ def play(
     Raises
     ------
     ValueError
-        If `pulls` or `players` is below 1.
+        If `pulls` or `players` is below 1 or too large, or the strategy chooses a machine that
+        does not exist.
 
     References
     ----------
@@ -298,14 +315,15 @@ def play(
     array([ 2., 12., 43.])
     """
     pulls, players = integer("pulls", pulls, 1), integer("players", players, 1)
-    rng = np.random.default_rng(rng)
+    rng = generator("rng", rng)
     everyone = np.arange(players)
     counts = np.zeros((players, len(bandit.p)), dtype=np.int64)
     totals = np.zeros(counts.shape)
-    arms = np.empty((pulls, players), dtype=np.int64)
+    arms = np.empty(affordable("pulls and players", (pulls, players)), dtype=np.int64)
     rewards = np.empty((pulls, players))
     for t in range(pulls):
-        arms[t] = strategy.choose(counts, totals / np.maximum(counts, 1), rng)
+        chosen = strategy.choose(counts, totals / np.maximum(counts, 1), rng)
+        arms[t] = integers("arms", chosen, 0, len(bandit.p) - 1)
         rewards[t] = bandit.pull(arms[t], rng)
         counts[everyone, arms[t]] += 1
         totals[everyone, arms[t]] += rewards[t]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._checks import array, number
+from arkaq_edu._checks import array, generator, number
 
 
 def softmax(values: ArrayLike, temperature: float) -> NDArray[np.float64]:
@@ -14,19 +14,20 @@ def softmax(values: ArrayLike, temperature: float) -> NDArray[np.float64]:
     Parameters
     ----------
     values : array_like, shape (..., A)
-        The value of each action, finite.
+        The value of each action, at least one in each row; -inf for one that is not allowed.
     temperature : float
         T > 0, in the unit of the values. At infinity all actions are equally likely.
 
     Returns
     -------
     ndarray, shape (..., A)
-        Probabilities; each row sums to 1.
+        Probabilities; each row sums to 1. Actions that are not allowed have 0.
 
     Raises
     ------
     ValueError
-        If a value is not finite or `temperature` is not above 0.
+        If there are no values, one is neither finite nor -inf, a row allows no action, or
+        `temperature` is not above 0.
 
     Notes
     -----
@@ -42,11 +43,22 @@ def softmax(values: ArrayLike, temperature: float) -> NDArray[np.float64]:
     >>> softmax([0.0, np.log(3.0)], temperature=1.0)
     array([0.25, 0.75])
     """
-    Q = array("values", values, (None,) * max(1, np.ndim(values)))
-    T = number("temperature", temperature, 0, open_low=True)
-    with np.errstate(over="ignore"):  # a difference over a tiny T may become -inf: exp gives 0
-        weights = np.exp((Q - Q.max(axis=-1, keepdims=True)) / T)
+    Q, T = _rows(values), number("temperature", temperature, 0, open_low=True)
+    below = Q - Q.max(axis=-1, keepdims=True)
+    # A difference over a tiny T may become -inf: exp gives 0. And -inf / inf has no value.
+    with np.errstate(over="ignore", invalid="ignore"):
+        weights = np.where(below == -np.inf, 0.0, np.exp(below / T))
     return weights / weights.sum(axis=-1, keepdims=True)
+
+
+def _rows(values: ArrayLike) -> NDArray[np.float64]:
+    """Return the values of actions, checked: each row must allow at least one."""
+    Q = array("values", values, None, allow_minus_infinity=True)
+    if not Q.ndim or not Q.size:
+        raise ValueError(f"values must hold at least one action in a row, got shape {Q.shape}")
+    if (Q.max(axis=-1) == -np.inf).any():
+        raise ValueError("values must allow an action in each row, got one of -inf only")
+    return Q
 
 
 def argmax_shared(values: ArrayLike, rng: np.random.Generator | int) -> NDArray[np.intp]:
@@ -55,7 +67,7 @@ def argmax_shared(values: ArrayLike, rng: np.random.Generator | int) -> NDArray[
     Parameters
     ----------
     values : array_like, shape (..., A)
-        The value of each action.
+        The value of each action; -inf for one that is not allowed.
     rng : numpy.random.Generator or int
         The random numbers: one for each value.
 
@@ -66,7 +78,7 @@ def argmax_shared(values: ArrayLike, rng: np.random.Generator | int) -> NDArray[
     Raises
     ------
     ValueError
-        If there is no action, or a value is NaN.
+        If there are no values, one is neither finite nor -inf, or a row allows no action.
 
     Notes
     -----
@@ -82,9 +94,16 @@ def argmax_shared(values: ArrayLike, rng: np.random.Generator | int) -> NDArray[
     >>> argmax_shared([[1, 2, 0], [7, 5, 3]], rng=0)
     array([1, 0])
     """
-    values = np.asarray(values)
-    if not values.size or np.isnan(values).any():
-        raise ValueError(f"values must be numbers, at least one in a row, got {values}")
-    tickets = np.random.default_rng(rng).random(values.shape)
-    best = values == values.max(axis=-1, keepdims=True)
-    return np.where(best, tickets, -1.0).argmax(axis=-1)
+    return draw_best(_rows(values), generator("rng", rng))
+
+
+def draw_best(Q: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.intp]:
+    """Draw as `argmax_shared` does, from values that may be infinite.
+
+    Examples
+    --------
+    >>> draw_best(np.array([[1.0, np.inf]]), np.random.default_rng(0))
+    array([1])
+    """
+    best = Q.max(axis=-1, keepdims=True) == Q
+    return np.where(best, rng.random(Q.shape), -1.0).argmax(axis=-1)

@@ -41,20 +41,29 @@ def replay(Q, visits, s, a, r, s_next, terminated, n_steps, alphas, gamma, chang
 
 
 @kernel
+def weight(gap, temperature):
+    """Return the weight of an action that is worth `gap` <= 0 more than the best one."""
+    if gap == -math.inf:  # not allowed
+        return 0.0
+    return 1.0 if temperature == math.inf else math.exp(gap / temperature)
+
+
+@kernel
 def boltzmann(q, temperature, u):
     """Draw an action by its Boltzmann probability (eq 3.2)."""
-    if temperature == math.inf:
-        return int(u * len(q))
     top = q.max()
     total = 0.0
     for a in range(len(q)):
-        total += math.exp((q[a] - top) / temperature)
-    below = 0.0
-    for a in range(len(q) - 1):
-        below += math.exp((q[a] - top) / temperature)
+        total += weight(q[a] - top, temperature)
+    below, last = 0.0, 0
+    for a in range(len(q)):
+        before = below
+        below += weight(q[a] - top, temperature)
         if u * total < below:
             return a
-    return len(q) - 1
+        if below > before:
+            last = a
+    return last  # u times the total was rounded up to the total
 
 
 @kernel
@@ -73,9 +82,48 @@ def greedy(q, u):
 
 
 @kernel
+def running_sums(p, first):
+    """Return the running sums of each row of probabilities; the last of a row is 1.
+
+    Row i is p[first[i]:first[i + 1]], as in a sparse matrix (CSR).
+    """
+    sums = np.empty(len(p))
+    for i in range(len(first) - 1):
+        total = 0.0
+        for k in range(first[i], first[i + 1]):
+            total += p[k]
+            sums[k] = total
+        for k in range(first[i], first[i + 1]):
+            sums[k] /= total
+    return sums
+
+
+@kernel
+def draw(sums, successors, first, row, u):
+    """Draw the next state: the first successor with a running sum above u."""
+    low, high = first[row], first[row + 1] - 1
+    while low < high:
+        middle = (low + high) // 2
+        if sums[middle] > u:
+            high = middle
+        else:
+            low = middle + 1
+    return successors[low]
+
+
+@kernel
+def draws(sums, successors, first, rows, u):
+    """Draw the next state of many walkers."""
+    drawn = np.empty(len(rows), np.int64)
+    for i in range(len(rows)):
+        drawn[i] = draw(sums, successors, first, rows[i], u[i])
+    return drawn
+
+
+@kernel
 def train(
-    Q, visits, cumulative, R, ends, starts, u, temperatures, alphas, gamma, changes, returns,
-    lengths,
+    Q, visits, sums, successors, first, R, ends, starts, u, temperatures, alphas, gamma, changes,
+    returns, lengths,
 ):  # fmt: skip
     """Run the loop of figures 4.3 and 4.4 for len(u) steps; return the number of episodes."""
     episode, earned, length = 0, 0.0, 0
@@ -83,7 +131,7 @@ def train(
     for t in range(len(u)):
         temperature = temperatures[min(t, len(temperatures) - 1)]
         a = boltzmann(Q[s], temperature, u[t, 1]) if temperature > 0 else greedy(Q[s], u[t, 1])
-        s_next = np.searchsorted(cumulative[a, s], u[t, 2], side="right")
+        s_next = draw(sums, successors, first, a * len(R) + s, u[t, 2])
         discount = 0.0 if ends[s_next] else gamma
         changes[t] = update(Q, visits, s, a, R[s, a], s_next, discount, alphas)
         earned, length, s = earned + R[s, a], length + 1, s_next

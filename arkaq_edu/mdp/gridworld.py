@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._checks import array, number
+from arkaq_edu._checks import affordable, array, number, shown
 from arkaq_edu.mdp.model import MDP
 
 #: The four actions of a grid world, each with its step as (columns to the right, rows up).
@@ -103,7 +103,7 @@ def grid_world(plan: Sequence[str] = FLOOR, slip: float = 0.1, gamma: float = 0.
         The probability that a step goes to one side instead, in [0, 1]; both sides are equally
         likely. A step against a wall or the border leads nowhere.
     gamma : float, default 0.95
-        The discount rate, in [0, 1).
+        The discount rate, in [0, 1].
 
     Returns
     -------
@@ -128,16 +128,20 @@ def grid_world(plan: Sequence[str] = FLOOR, slip: float = 0.1, gamma: float = 0.
     >>> value_iteration(grid.mdp)
     (array([ 50., 100.,   0.]), array([0, 0, 0]))
     """
-    plan, slip = tuple(plan), number("slip", slip, 0, 1)
+    slip = number("slip", slip, 0, 1)
+    refusal = ValueError(f"plan must have rows of one length made of . # o x, got {shown(plan)}")
+    if isinstance(plan, str) or not all(isinstance(row, str) for row in plan):
+        raise refusal
+    plan = tuple(plan)
     signs = _signs(plan)
     if len({len(row) for row in plan}) != 1 or not set(signs.values()) <= {WALL, *GAINS}:
-        raise ValueError(f"plan must have rows of one length made of . # o x, got {plan}")
+        raise refusal
     squares = [square for square, sign in signs.items() if sign != WALL]
     if "." not in signs.values():
-        raise ValueError(f"plan must have a free square, got {plan}")
+        raise ValueError(f"plan must have a free square, got {shown(plan)}")
     state = {square: s for s, square in enumerate(squares)}
     free = np.array([signs[square] == "." for square in squares])
-    ahead = np.zeros((len(MOVES), len(squares), len(squares)))
+    ahead = np.zeros(affordable("plan", (len(MOVES), len(squares), len(squares))))
     for (x, y), s in state.items():
         for a, (dx, dy) in enumerate(MOVES.values()):
             ahead[a, s, state.get((x + dx, y + dy), s) if free[s] else s] = 1

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy import sparse
 
-from arkaq_edu._checks import array, integers, number
+from arkaq_edu._checks import affordable, array, integers, number
 from arkaq_edu.mdp.model import MDP
 from arkaq_edu.mdp.planning import finite_horizon, policy_iteration, policy_model
 
@@ -65,7 +67,7 @@ def delayed_rewards(
     n = len(waits)
     earned = array("rewards", rewards, (n,))
     n_states = 1 + int(waits.sum())
-    T = np.zeros((n, n_states, n_states))
+    T = np.zeros(affordable("delays", (n, n_states, n_states)))
     R = np.zeros((n_states, n))
     last = waits.cumsum()
     for a in range(n):
@@ -128,7 +130,8 @@ def best_chains(earned: ArrayLike) -> list[str]:
     >>> best_chains([100.0, 110.0, 110.0])
     ['middle', 'lower']
     """
-    best = np.isclose(earned, np.max(earned))
+    earned = array("earned", earned, (len(CHAINS),))
+    best = np.isclose(earned, earned.max())
     return [name for name, is_best in zip(CHAINS, best, strict=True) if is_best]
 
 
@@ -176,7 +179,7 @@ def average_reward(mdp: MDP) -> NDArray[np.float64]:
     -------
     ndarray, shape (S, A)
         The long-run average of the rewards if the best actions follow. The reward of the first
-        action does not matter, because it comes only once.
+        action does not matter, because it comes only once. An action that is not allowed has -inf.
 
     Notes
     -----
@@ -199,10 +202,10 @@ def average_reward(mdp: MDP) -> NDArray[np.float64]:
     policy = mdp.R.argmax(axis=1)
     while True:
         gain, bias = _gain_and_bias(*policy_model(mdp, policy))
-        average = (mdp.T @ gain).T
-        onward = mdp.R + (mdp.T @ bias).T
+        average = np.where(mdp.allowed, mdp.expected(gain), -np.inf)
+        onward = mdp.R + mdp.expected(bias)
         # Rounding must not count as an improvement, or two equal actions alternate for ever.
-        rounding = 1e-11 * (np.abs(mdp.R).max() + np.abs(bias).max())
+        rounding = 1e-11 * (np.abs(mdp.R[mdp.allowed]).max() + np.abs(bias).max())
         best = average.max(axis=1)
         higher = best > average[states, policy] + rounding
         onward[average < best[:, None] - rounding] = -np.inf
@@ -214,9 +217,11 @@ def average_reward(mdp: MDP) -> NDArray[np.float64]:
 
 
 def _gain_and_bias(
-    T: NDArray[np.float64], R: NDArray[np.float64]
+    T: Any, R: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.floating]]:
     """Return the average reward per step from each state of a chain, and the bias of each."""
+    if sparse.issparse(T):
+        T = T.toarray()  # the limiting matrix is dense anyway
     limit = _limiting_matrix(T)
     gain = limit @ R
     bias = np.linalg.solve(np.eye(len(T)) - T + limit, R - gain)

@@ -1,19 +1,34 @@
-"""Planning: the best actions, computed from a known model."""
+"""Planning: the best actions, computed from a known model, dense or sparse.
+
+With gamma = 1, values without a horizon are those of the proper policies: the policies that lead to
+an end with certainty, from every state (stochastic shortest paths).
+"""
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy import sparse
 
-from arkaq_edu._checks import array, distribution, integer, integers, number
+from arkaq_edu._checks import affordable, array, distribution, integer, integers, number
 from arkaq_edu.mdp.model import MDP
+
+#: A longer horizon is refused: more sweeps than anybody means, or waits for.
+MOST_SWEEPS = 10**6
+
+#: Sweeps that follow a policy before it is improved again: from 5 to 20 take about the same time.
+SWEEPS = 8
+
+#: Improvements before the first exact evaluation in `policy_iteration`.
+IMPROVEMENTS = 2
 
 
 def value_iteration(
     mdp: MDP, tol: float = 1e-9, horizon: int | None = None
-) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+) -> tuple[NDArray[np.floating], NDArray[np.intp]]:
     """Iterate V(s) = max_a (R(s, a) + gamma sum_t T(s, a, t) V(t)), equation 2.8, from V = 0.
 
     Parameters
@@ -24,7 +39,7 @@ def value_iteration(
         Without a horizon, the values are within `tol` of V* in every state (up to the rounding of
         floats).
     horizon : int, optional
-        The number of steps left, at least 1; without it the future has no end.
+        The number of steps left, from 1 to 1,000,000; without it the future has no end.
 
     Returns
     -------
@@ -38,20 +53,26 @@ def value_iteration(
     Raises
     ------
     ValueError
-        If `tol` is not above 0 or `horizon` is not an integer >= 1.
+        If `tol` or `horizon` is out of range. If gamma is 1, as `policy_iteration` does.
 
     See Also
     --------
-    policy_iteration : exact, and faster if gamma is near 1.
+    modified_policy_iteration : the same values, sooner if gamma is near 1.
+    policy_iteration : exact.
     error_bound : how far given values can be from V*.
 
     Notes
     -----
-    Each sweep reduces the distance from V* at least by the factor gamma. So after a sweep that
-    changed V by at most d, V is within d gamma / (1 - gamma) of V*. And after n sweeps from V = 0,
-    V is within gamma^n max|R| / (1 - gamma) of V*. The iteration ends when one of these two bounds
-    is below `tol`. A policy that is greedy for values within e of V* earns at most
-    2 gamma e / (1 - gamma) less than V*.
+    Each sweep reduces the distance from V* at least by the factor gamma. It does so from above and
+    from below: after a sweep that changed V by at least d and at most D, V* lies between
+    V + d gamma / (1 - gamma) and V + D gamma / (1 - gamma) in every state. The iteration ends when
+    these bounds are 2 `tol` apart, and returns their middle. That D - d becomes small is enough,
+    and it does so long before D does. Besides, after n sweeps from V = 0, V is within
+    gamma^n max|R| / (1 - gamma) of V*, which limits the number of sweeps. A policy that is greedy
+    for values within e of V* earns at most 2 gamma e / (1 - gamma) less than V*.
+
+    With gamma = 1, no number of sweeps tells how near V* is. Then the values are those of
+    `policy_iteration`.
 
     Corrections to the thesis: the argument x of 2.6 and 2.7 is the state s. Equation 2.6, the best
     immediate reward, is the policy for one remaining step. Equation 2.7, V_1 = gamma max_a R(s, a),
@@ -61,6 +82,9 @@ def value_iteration(
     References
     ----------
     Thesis 2.2.1 (equations 2.6-2.9). R. Bellman, Dynamic Programming, Princeton, 1957.
+    J. MacQueen, "A modified dynamic programming method for Markovian decision problems", Journal of
+    Mathematical Analysis and Applications 14, 1966 (the bounds). M. Puterman, Markov Decision
+    Processes, Wiley, 1994, section 6.6.
 
     Examples
     --------
@@ -73,22 +97,96 @@ def value_iteration(
     """
     tol = number("tol", tol, 0, open_low=True)
     if horizon is not None:
-        Q = finite_horizon(mdp, horizon, mdp.gamma)[-1]
-        return Q.max(axis=1), _first_best(Q, 1e-12 * np.abs(Q).max())
+        V = np.zeros(mdp.n_states)
+        for _ in range(integer("horizon", horizon, 1, MOST_SWEEPS)):
+            Q = mdp.action_values(V)
+            V = Q.max(axis=1)
+        return V, _first_best(Q, 1e-12 * np.abs(V).max())
+    if mdp.gamma == 1:
+        return policy_iteration(mdp)
     V = np.zeros(mdp.n_states)
     for _ in range(_sweeps(mdp, tol)):
         previous, V = V, mdp.action_values(V).max(axis=1)
-        if np.abs(V - previous).max() * mdp.gamma / (1 - mdp.gamma) <= tol:
+        low, high = _bounds(mdp, V - previous)
+        if high - low <= 2 * tol:
+            V = np.where(mdp.ends, 0.0, V + (low + high) / 2)
             break
     return V, _first_best(mdp.action_values(V), 2 * mdp.gamma * tol)
 
 
+def _bounds(mdp: MDP, change: NDArray[np.float64]) -> tuple[float, float]:
+    """Return how far V* lies at least and at most above values that a sweep has just changed."""
+    ahead = mdp.gamma / (1 - mdp.gamma)
+    return float(change.min()) * ahead, float(change.max()) * ahead
+
+
 def _sweeps(mdp: MDP, tol: float) -> int:
     """Return a number of sweeps after which V is always within `tol` of V*."""
-    furthest = np.abs(mdp.R).max() / (1 - mdp.gamma)
+    furthest = np.abs(mdp.R[mdp.allowed]).max() / (1 - mdp.gamma)
     if mdp.gamma == 0 or furthest <= tol:
         return 1
     return math.ceil(math.log(tol / furthest) / math.log(mdp.gamma))
+
+
+def modified_policy_iteration(
+    mdp: MDP, tol: float = 1e-9, sweeps: int = SWEEPS
+) -> tuple[NDArray[np.floating], NDArray[np.intp]]:
+    """Take the best actions for V, follow them for some sweeps, and repeat.
+
+    Parameters
+    ----------
+    mdp : MDP
+        The model.
+    tol : float, default 1e-9
+        The values are within `tol` of V* in every state (up to the rounding of floats).
+    sweeps : int, default 8
+        The number of sweeps V = R_policy + gamma T_policy V after each improvement of the policy,
+        at least 0. With none this is value iteration.
+
+    Returns
+    -------
+    values : ndarray, shape (S,)
+        V*.
+    policy : ndarray of int, shape (S,)
+        The action of each state: the lowest of those that are equally good within `tol`.
+
+    Raises
+    ------
+    ValueError
+        If `tol` or `sweeps` is out of range. If gamma is 1, as `policy_iteration` does.
+
+    Notes
+    -----
+    A sweep that follows a policy looks at one action of each state, an improvement at all of them.
+    The bounds are those of `value_iteration`.
+
+    References
+    ----------
+    M. Puterman, Markov Decision Processes, Wiley, 1994, sections 6.5 and 6.6.
+
+    Examples
+    --------
+    >>> mdp = MDP(T=[[[0, 1], [0, 1]], [[1, 0], [1, 0]]], R=[[0, 1], [2, 0]], gamma=0.5)
+    >>> values, policy = modified_policy_iteration(mdp)
+    >>> values.round(6), policy
+    (array([2., 4.]), array([0, 0]))
+    """
+    tol, sweeps = number("tol", tol, 0, open_low=True), integer("sweeps", sweeps, 0, MOST_SWEEPS)
+    if mdp.gamma == 1:
+        return policy_iteration(mdp)
+    V = np.zeros(mdp.n_states)
+    # From V = 0 an improvement can begin by lowering V, so three times as far from V* as a sweep.
+    for _ in range(_sweeps(mdp, tol / 3)):
+        Q = mdp.action_values(V)
+        previous, V = V, Q.max(axis=1)
+        low, high = _bounds(mdp, V - previous)
+        if high - low <= 2 * tol:
+            V = np.where(mdp.ends, 0.0, V + (low + high) / 2)
+            break
+        T, R = _chain(mdp, Q.argmax(axis=1))
+        for _ in range(sweeps):
+            V = R + mdp.gamma * (T @ V)
+    return V, _first_best(mdp.action_values(V), 2 * mdp.gamma * tol)
 
 
 def finite_horizon(mdp: MDP, horizon: int, gamma: float = 1.0) -> NDArray[np.float64]:
@@ -99,7 +197,7 @@ def finite_horizon(mdp: MDP, horizon: int, gamma: float = 1.0) -> NDArray[np.flo
     mdp : MDP
         The model. Its own discount rate is not used.
     horizon : int
-        The number of steps h, at least 1.
+        The number of steps h, from 1 to 1,000,000.
     gamma : float, default 1.0
         The discount rate, in [0, 1]. 1 gives the plain sum of the finite-horizon model.
 
@@ -111,7 +209,7 @@ def finite_horizon(mdp: MDP, horizon: int, gamma: float = 1.0) -> NDArray[np.flo
     Raises
     ------
     ValueError
-        If `horizon` is not an integer >= 1 or `gamma` is outside [0, 1].
+        If `horizon` or `gamma` is out of range, or the table would need too many bytes.
 
     Notes
     -----
@@ -131,12 +229,12 @@ def finite_horizon(mdp: MDP, horizon: int, gamma: float = 1.0) -> NDArray[np.flo
     array([[[1., 3.]],
            [[4., 6.]]])
     """
-    horizon = integer("horizon", horizon, 1)
+    horizon = integer("horizon", horizon, 1, MOST_SWEEPS)
     gamma = number("gamma", gamma, 0, 1)
-    Q = np.empty((horizon, *mdp.R.shape))
+    Q = np.empty(affordable("horizon", (horizon, *mdp.R.shape)))
     V = np.zeros(mdp.n_states)
     for k in range(horizon):
-        Q[k] = mdp.R + gamma * (mdp.T @ V).T
+        Q[k] = mdp.R + gamma * mdp.expected(V)
         V = Q[k].max(axis=1)
     return Q
 
@@ -152,7 +250,7 @@ def best_actions(Q: ArrayLike, slack: float = 1e-9) -> NDArray[np.bool_]:
     Parameters
     ----------
     Q : array_like, shape (S, A)
-        The value of each action.
+        The value of each action; -inf for one that is not allowed.
     slack : float, default 1e-9
         An action this far below the best still counts as equally good; at least 0.
 
@@ -164,7 +262,7 @@ def best_actions(Q: ArrayLike, slack: float = 1e-9) -> NDArray[np.bool_]:
     Raises
     ------
     ValueError
-        If `Q` is not a matrix of finite numbers or `slack` is below 0.
+        If `Q` is not a matrix of numbers or `slack` is below 0.
 
     Examples
     --------
@@ -172,7 +270,7 @@ def best_actions(Q: ArrayLike, slack: float = 1e-9) -> NDArray[np.bool_]:
     array([[False,  True,  True],
            [ True, False, False]])
     """
-    Q = array("Q", Q, (None, None))
+    Q = array("Q", Q, (None, None), allow_minus_infinity=True)
     return Q.max(axis=1, keepdims=True) - number("slack", slack, 0) <= Q
 
 
@@ -194,7 +292,7 @@ def error_bound(mdp: MDP, values: ArrayLike) -> float:
     Raises
     ------
     ValueError
-        If `values` has another shape or holds a number that is not finite.
+        If `values` has another shape or holds a number that is not finite, or gamma is 1.
 
     References
     ----------
@@ -206,8 +304,10 @@ def error_bound(mdp: MDP, values: ArrayLike) -> float:
     >>> error_bound(mdp, [2.0]), error_bound(mdp, [0.0])
     (0.0, 2.0)
     """
-    change = mdp.action_values(values).max(axis=1) - np.asarray(values)
-    return float(np.abs(change).max() / (1 - mdp.gamma))
+    gamma = number("gamma", mdp.gamma, 0, 1, open_high=True)
+    V = array("values", values, (mdp.n_states,))
+    change = mdp.action_values(V).max(axis=1) - V
+    return float(np.abs(change).max() / (1 - gamma))
 
 
 def policy_evaluation(mdp: MDP, policy: ArrayLike) -> NDArray[np.floating]:
@@ -227,7 +327,13 @@ def policy_evaluation(mdp: MDP, policy: ArrayLike) -> NDArray[np.floating]:
     Raises
     ------
     ValueError
-        If the shape does not fit, an action does not exist, or a row is not a distribution.
+        If the shape does not fit, an action does not exist or is not allowed, or a row is not a
+        distribution. If gamma is 1 and some state may never reach an end.
+
+    Notes
+    -----
+    An end is worth 0. So the equation has one solution if gamma is below 1, and also if gamma is 1
+    and the policy is proper: it leads to an end with certainty.
 
     References
     ----------
@@ -239,8 +345,41 @@ def policy_evaluation(mdp: MDP, policy: ArrayLike) -> NDArray[np.floating]:
     >>> policy_evaluation(mdp, [1]), policy_evaluation(mdp, [[0.5, 0.5]])
     (array([6.]), array([4.]))
     """
-    T, R = policy_model(mdp, policy)
-    return np.linalg.solve(np.eye(mdp.n_states) - mdp.gamma * T, R)
+    chances = policy_chances(mdp, policy)
+    if mdp.gamma == 1:
+        lost = np.flatnonzero(_toward_ends(mdp, chances > 0) < 0)
+        if len(lost):
+            raise ValueError(
+                "policy must be proper when gamma is 1 (lead to an end from every state), "
+                f"got one that reaches none from state {lost[0]}"
+            )
+    T, R = policy_model(mdp, chances)
+    return _evaluate(mdp, T, R)
+
+
+def _evaluate(mdp: MDP, T: Any, R: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Solve V = R + gamma T V, with V = 0 at the ends."""
+    onward = (mdp.gamma * ~mdp.ends)[:, np.newaxis] * T
+    if sparse.issparse(T):
+        from scipy.sparse.linalg import spsolve  # takes a while to import
+
+        V = spsolve(sparse.csc_array(sparse.eye_array(mdp.n_states) - onward), R)
+    else:
+        V = np.linalg.solve(np.eye(mdp.n_states) - onward, R)
+    # What is only rounding of its terms, or -0.0, is 0.0 with every linear algebra library.
+    terms = np.abs(R) + onward @ np.abs(V)
+    return np.where(np.abs(V) > 1e-13 * terms, V, 0.0)
+
+
+def _toward_ends(mdp: MDP, usable: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """Return for each state the first usable action that can lead nearer to an end, or else -1."""
+    policy = np.where(mdp.ends, usable.argmax(axis=1), -1)
+    while True:
+        nearer = usable & (mdp.expected((policy >= 0).astype(float)) > 0)
+        found = (policy < 0) & nearer.any(axis=1)
+        if not found.any():
+            return policy
+        policy[found] = nearer[found].argmax(axis=1)
 
 
 def policy_iteration(mdp: MDP) -> tuple[NDArray[np.floating], NDArray[np.intp]]:
@@ -256,11 +395,24 @@ def policy_iteration(mdp: MDP) -> tuple[NDArray[np.floating], NDArray[np.intp]]:
     values : ndarray, shape (S,)
         V*, up to the rounding of floats.
     policy : ndarray of int, shape (S,)
-        The action of each state: the lowest of those that are equally good.
+        The action of each state: the lowest of those that are equally good. With gamma = 1, the
+        lowest of them that can lead nearer to an end.
+
+    Raises
+    ------
+    ValueError
+        If gamma is 1 and some state reaches no end under any policy, or can earn without end.
+
+    Notes
+    -----
+    With gamma = 1, the first policy is proper, and so is each that follows: an action is replaced
+    only by a better one, so that a new loop would have to earn something in each round.
 
     References
     ----------
-    R. Howard, Dynamic Programming and Markov Processes, MIT Press, 1960.
+    R. Howard, Dynamic Programming and Markov Processes, MIT Press, 1960. D. Bertsekas,
+    J. Tsitsiklis, "An analysis of stochastic shortest path problems", Mathematics of Operations
+    Research 16, 1991.
 
     Examples
     --------
@@ -269,18 +421,45 @@ def policy_iteration(mdp: MDP) -> tuple[NDArray[np.floating], NDArray[np.intp]]:
     (array([2., 4.]), array([0, 0]))
     """
     states = np.arange(mdp.n_states)
-    # A few cheap sweeps give a good first policy; each evaluation costs O(S^3).
-    _, policy = value_iteration(mdp, horizon=20)
-    V = policy_evaluation(mdp, policy)
+    policy = _first_policy(mdp)
+    V = _evaluate(mdp, *_chain(mdp, policy))
     while True:
         Q = mdp.action_values(V)
         rounding = 1e-14 * np.abs(V).max()
         better = Q.max(axis=1) > Q[states, policy] + rounding
+        if not better.any():
+            break
         policy = np.where(better, Q.argmax(axis=1), policy)
-        previous, V = V, policy_evaluation(mdp, policy)
+        if mdp.gamma == 1 and (_toward_ends(mdp, np.eye(mdp.n_actions)[policy] > 0) < 0).any():
+            raise ValueError(
+                "R must let no loop earn without end when gamma is 1, got one that does"
+            )
+        previous, V = V, _evaluate(mdp, *_chain(mdp, policy))
         # What is only better by rounding earns no more, so equal actions cannot alternate for ever.
         if not V.sum() > previous.sum():
-            return previous, _first_best(Q, rounding)
+            V = previous
+            break
+    if mdp.gamma == 1:
+        return V, _toward_ends(mdp, best_actions(Q, rounding))
+    return V, _first_best(Q, rounding)
+
+
+def _first_policy(mdp: MDP) -> NDArray[np.intp]:
+    """Return a good policy, and with gamma = 1 a proper one: each evaluation costs O(S^3)."""
+    if mdp.gamma == 1:
+        policy = _toward_ends(mdp, mdp.allowed)
+        if (policy < 0).any():
+            raise ValueError(
+                "mdp must reach an end from every state when gamma is 1, "
+                f"got no path from state {policy.argmin()}"
+            )
+        return policy
+    V = np.zeros(mdp.n_states)
+    for _ in range(IMPROVEMENTS):
+        T, R = _chain(mdp, mdp.action_values(V).argmax(axis=1))
+        for _ in range(SWEEPS):
+            V = R + mdp.gamma * (T @ V)
+    return mdp.action_values(V).argmax(axis=1)
 
 
 def policy_model(mdp: MDP, policy: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -295,15 +474,16 @@ def policy_model(mdp: MDP, policy: ArrayLike) -> tuple[NDArray[np.float64], NDAr
 
     Returns
     -------
-    T : ndarray, shape (S, S)
-        The probability of going from one state to another.
+    T : ndarray or sparse matrix, shape (S, S)
+        The probability of going from one state to another, sparse if the model is.
     R : ndarray, shape (S,)
         The reward expected in each state.
 
     Raises
     ------
     ValueError
-        If the shape does not fit, an action does not exist, or a row is not a distribution.
+        If the shape does not fit, an action does not exist or is not allowed, or a row is not a
+        distribution.
 
     Examples
     --------
@@ -314,7 +494,18 @@ def policy_model(mdp: MDP, policy: ArrayLike) -> tuple[NDArray[np.float64], NDAr
            [1., 0.]]), array([0., 0.]))
     """
     chances = policy_chances(mdp, policy)
-    return np.einsum("sa,ast->st", chances, mdp.T), (chances * mdp.R).sum(axis=1)
+    s, a = chances.nonzero()
+    # Row s picks from the model's stacked rows those of the actions of state s.
+    picked = sparse.csr_array(
+        (chances[s, a], (s, a * mdp.n_states + s)), shape=(mdp.n_states, mdp.R.size)
+    )
+    return picked @ mdp.stacked, picked @ mdp.R.T.ravel()
+
+
+def _chain(mdp: MDP, actions: NDArray[np.intp]) -> tuple[Any, NDArray[np.float64]]:
+    """Return what `policy_model` does, for one action in each state, by plain indexing."""
+    states = np.arange(mdp.n_states)
+    return mdp.stacked[actions * mdp.n_states + states], mdp.R[states, actions]
 
 
 def policy_chances(mdp: MDP, policy: ArrayLike) -> NDArray[np.float64]:
@@ -334,16 +525,23 @@ def policy_chances(mdp: MDP, policy: ArrayLike) -> NDArray[np.float64]:
     Raises
     ------
     ValueError
-        If the shape does not fit, an action does not exist, or a row is not a distribution.
+        If the shape does not fit, an action does not exist or is not allowed, or a row is not a
+        distribution.
 
     Examples
     --------
     >>> policy_chances(MDP(T=[[[1]], [[1]]], R=[[1, 3]], gamma=0.5), [1])
     array([[0., 1.]])
     """
-    if np.ndim(policy) != 1:
-        return distribution("policy", array("policy", policy, mdp.R.shape))
-    actions = integers("policy", policy, 0, mdp.n_actions - 1)
-    if len(actions) != mdp.n_states:
-        raise ValueError(f"policy must have shape ({mdp.n_states},), got {actions.shape}")
-    return np.eye(mdp.n_actions)[actions]
+    if np.ndim(policy) == 1:
+        actions = integers("policy", policy, 0, mdp.n_actions - 1)
+        if len(actions) != mdp.n_states:
+            raise ValueError(f"policy must have shape ({mdp.n_states},), got {actions.shape}")
+        chances = np.eye(mdp.n_actions)[actions]
+    else:
+        chances = distribution("policy", policy, mdp.R.shape)
+    wrong = np.argwhere((chances > 0) & ~mdp.allowed)
+    if len(wrong):
+        s, a = wrong[0].tolist()
+        raise ValueError(f"policy must take allowed actions, got action {a} in state {s}")
+    return chances

@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._checks import array, integer, number
+from arkaq_edu._checks import affordable, array, generator, integer, number
+from arkaq_edu.mdp import compiled
 from arkaq_edu.mdp.model import MDP
 from arkaq_edu.mdp.planning import policy_chances
 from arkaq_edu.mdp.q_learning import QLearner
@@ -78,19 +79,21 @@ def simulate(
     >>> simulate(mdp, [0, 0, 0], start=0, rng=0)
     Episode(s=array([0, 1, 2]), a=array([0, 0]), r=array([1., 2.]), terminated=True)
     """
-    rng = np.random.default_rng(rng)
+    rng = generator("rng", rng)
     max_steps = integer("max_steps", max_steps, 1)
     if start is None:
         start = int(rng.choice(mdp.n_states, p=mdp.start))
     states, actions = [integer("start", start, 0, mdp.n_states - 1)], []
     below = policy_chances(mdp, policy).cumsum(axis=1)
     below /= below[:, -1:]
-    for u, v in rng.random((max_steps, 2)):
+    sums = mdp.cumulative
+    for u, v in rng.random(affordable("max_steps", (max_steps, 2))):
         s = states[-1]
         if mdp.ends[s]:
             break
         actions.append(int(below[s].searchsorted(u, side="right")))
-        states.append(int(mdp.cumulative[actions[-1], s].searchsorted(v, side="right")))
+        row = actions[-1] * mdp.n_states + s
+        states.append(int(compiled.draw(sums.data, sums.indices, sums.indptr, row, v)))
     visited, a = np.array(states), np.array(actions, dtype=np.int64)
     return Episode(visited, a, mdp.R[visited[:-1], a], bool(mdp.ends[states[-1]]))
 

@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from bisect import bisect_left, bisect_right
+from collections.abc import Callable, Mapping
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._checks import array, integer, integers, number
+from arkaq_edu._checks import (
+    LARGEST,
+    affordable,
+    array,
+    generator,
+    integer,
+    integers,
+    number,
+    shown,
+)
 from arkaq_edu.mdp import compiled
 from arkaq_edu.mdp.choice import softmax
 
@@ -35,7 +47,8 @@ class QLearner:
     Attributes
     ----------
     Q : ndarray of float64, shape (n_states, n_actions)
-        Expected return of each pair; may be written to in place.
+        Expected return of each pair; may be written to in place. -inf marks an action that the
+        state does not allow: it is never drawn, and cannot be learned.
     visits : ndarray of int64, shape (n_states, n_actions)
         Number of backups of each pair.
 
@@ -89,9 +102,9 @@ class QLearner:
             alpha = number("alpha", alpha, 0, 1)
         self.alpha = alpha
         self.gamma = number("gamma", gamma, 0, 1)
-        self.Q = np.full(shape, number("initial", initial))
+        self.Q = np.full(affordable("n_states and n_actions", shape), number("initial", initial))
         self.visits = np.zeros(shape, np.int64)
-        self.rng = np.random.default_rng(rng)
+        self.rng = generator("rng", rng)
 
     def update(
         self,
@@ -126,8 +139,9 @@ class QLearner:
         Raises
         ------
         ValueError
-            If an index is not an integer inside the table, `n_steps` is below 1, or `r` is not a
-            number in [-1e100, 1e100]. Then nothing is learned.
+            If an index is not an integer inside the table, `n_steps` is below 1, `terminated` is
+            neither true nor false, or `r` is not a number in [-1e100, 1e100]. If `a` is not
+            allowed in `s`, or no action in `s_next`. Then nothing is learned.
 
         Examples
         --------
@@ -139,12 +153,15 @@ class QLearner:
         n_states, n_actions = Q.shape
         s, s_next = integer("s", s, 0, n_states - 1), integer("s_next", s_next, 0, n_states - 1)
         a, n_steps = integer("a", a, 0, n_actions - 1), integer("n_steps", n_steps, 1)
-        r = number("r", r)
+        r, terminated = number("r", r), _flag("terminated", terminated)
+        best = max(Q[s_next])
+        if best == -math.inf or Q[s, a] == -math.inf:
+            raise ValueError(_refusal(s, a, s_next, best))
 
         alpha = self._rate(int(visits[s, a]) + 1)
         visits[s, a] += 1
         discount = 0.0 if terminated else self.gamma**n_steps
-        target = r + discount * max(Q[s_next])
+        target = r + discount * best
         before = Q[s, a]
         Q[s, a] += alpha * (target - Q[s, a])
         return float(Q[s, a] - before)
@@ -179,9 +196,10 @@ class QLearner:
         >>> QLearner(1, 1, alpha="1/visits", gamma=0.9).rates(4)
         array([1.        , 0.5       , 0.33333333, 0.25      ])
         """
-        most = int(self.visits.max()) + n
+        most = int(self.visits.max()) + integer("n", n)
+        affordable("n", (most,))
         if callable(self.alpha):
-            rates = np.fromiter(map(self.alpha, range(1, most + 1)), np.float64, most)
+            rates = array("alpha", [self.alpha(n) for n in range(1, most + 1)], (most,))
             for i in np.flatnonzero(~((rates >= 0) & (rates <= 1))):
                 number(f"alpha({i + 1})", rates[i], 0, 1)
             return rates
@@ -226,7 +244,7 @@ class QLearner:
             integers("a", a, 0, n_actions - 1),
             array("r", r, (None,) * np.ndim(r)),
             integers("s_next", s_next, 0, n_states - 1),
-            np.asarray(terminated, dtype=bool),
+            _flags("terminated", terminated),
             integers("n_steps", n_steps, 1),
         )
         try:
@@ -236,6 +254,12 @@ class QLearner:
             raise ValueError(f"the columns must have one length, got shapes {lengths}") from None
         if together[0].ndim != 1:
             raise ValueError(f"the columns must have shape (N,), got {together[0].shape}")
+        forbidden = self.Q[together[0], together[1]] == -np.inf
+        best = self.Q[together[3]].max(axis=1)
+        if (forbidden | (best == -np.inf)).any():
+            i = int((forbidden | (best == -np.inf)).argmax())
+            s_i, a_i, s_next_i = (int(together[k][i]) for k in (0, 1, 3))
+            raise ValueError(f"{_refusal(s_i, a_i, s_next_i, best[i])} at ({i},)")
         changes = np.empty(len(together[0]))
         # The loop itself repeats a single `terminated` or `n_steps`: that saves two copies.
         arrays = map(np.ascontiguousarray, (*together[:4], *columns[4:]))
@@ -300,8 +324,14 @@ class QLearner:
         >>> learner.boltzmann(0, temperature=0.1)
         1
         """
-        below = self.probabilities(s, temperature).cumsum()
-        return int(below.searchsorted(self.rng.random() * below[-1], side="right"))
+        q, T = self._row(s), number("temperature", temperature, 0, open_low=True)
+        top = max(q)
+        # -inf / inf has no value: an action that is not allowed has the weight 0 at any T.
+        weights = [math.exp((x - top) / T) if x > -math.inf else 0.0 for x in q]
+        below = list(accumulate(weights))
+        total = below[-1]
+        # The product can be rounded up to the total: then it is the last action with a weight.
+        return min(bisect_right(below, self.rng.random() * total), bisect_left(below, total))
 
     def greedy(self, s: int) -> int:
         """Draw one of the best actions of `s`; each of n has probability 1/n (equation 3.3).
@@ -329,8 +359,9 @@ class QLearner:
         [0, 2]
         """
         q = self._row(s)
-        best = np.flatnonzero(q == q.max())
-        return int(best[int(self.rng.random() * len(best))])
+        top = max(q)
+        best = [a for a, x in enumerate(q) if x == top]
+        return best[int(self.rng.random() * len(best))]
 
     def explore(self, s: int) -> int:
         """Draw an action that has had no backup in `s`; if there is none, any action.
@@ -363,10 +394,12 @@ class QLearner:
         1
         """
         untried = self.unvisited(s)
-        return int(self.rng.choice(untried if len(untried) else self.Q.shape[1]))
+        if not len(untried):
+            untried = np.flatnonzero(np.array(self._row(s)) > -np.inf)
+        return int(self.rng.choice(untried))
 
     def unvisited(self, s: int) -> NDArray[np.intp]:
-        """Return the actions that have had no backup in `s`, in increasing order.
+        """Return the allowed actions that have had no backup in `s`, in increasing order.
 
         Parameters
         ----------
@@ -388,11 +421,18 @@ class QLearner:
         >>> QLearner(1, 3, alpha=1.0, gamma=0.0).unvisited(0)
         array([0, 1, 2])
         """
-        return np.flatnonzero(self.visits[integer("s", s, 0, len(self.Q) - 1)] == 0)
+        s = integer("s", s, 0, len(self.Q) - 1)
+        return np.flatnonzero((self.visits[s] == 0) & (self.Q[s] > -np.inf))
 
-    def _row(self, s: int) -> NDArray[np.float64]:
+    def _row(self, s: int) -> list[float]:
         """Return the values of the actions in `s`, checked."""
-        return array("Q", self.Q[integer("s", s, 0, len(self.Q) - 1)], (None,))
+        s = integer("s", s, 0, len(self.Q) - 1)
+        q: list[float] = self.Q[s].tolist()
+        if not all(x <= LARGEST for x in q):
+            array("Q", q, (None,), allow_minus_infinity=True)  # says which entry it is
+        if max(q) == -math.inf:
+            raise ValueError(f"Q must allow an action in every state, got only -inf in state {s}")
+        return q
 
     def state(self) -> dict[str, Any]:
         """Return all that has been learned, so that the same run can be continued from it.
@@ -427,13 +467,15 @@ class QLearner:
         Raises
         ------
         ValueError
-            If an entry is missing, has another shape than this table, holds a number that is not
-            finite or a negative count, or belongs to another kind of generator.
+            If an entry is missing, has another shape than this table, holds a value that is not a
+            number or a negative count, or belongs to another kind of generator.
         """
+        if not isinstance(state, Mapping):
+            raise ValueError(f"state must be a dict, got {shown(state)}")
         missing = {"Q", "visits", "rng"} - set(state)
         if missing:
             raise ValueError(f"state must hold Q, visits and rng, got no {sorted(missing)[0]}")
-        Q = array("Q", state["Q"], self.Q.shape)
+        Q = array("Q", state["Q"], self.Q.shape, allow_minus_infinity=True)
         visits = integers("visits", state["visits"], 0)
         if visits.shape != Q.shape:
             raise ValueError(f"visits must have shape {Q.shape}, got {visits.shape}")
@@ -443,3 +485,23 @@ class QLearner:
             kind = type(self.rng.bit_generator).__name__
             raise ValueError(f"rng must be the state of a {kind} generator") from None
         self.Q[:], self.visits[:] = Q, visits
+
+
+def _flag(name: str, value: Any) -> bool:
+    """Return a truth value: true, false, 1 or 0, also from an array of one element."""
+    if value is True or value is False:
+        return value
+    return bool(integer(name, int(value) if isinstance(value, np.bool_) else value, 0, 1))
+
+
+def _flags(name: str, value: ArrayLike) -> NDArray[np.bool_]:
+    """Return an array of truth values."""
+    x = np.asarray(value)
+    return x if x.dtype == bool else integers(name, value, 0, 1).astype(bool)
+
+
+def _refusal(s: int, a: int, s_next: int, best: float) -> str:
+    """Say what is not allowed in an experience."""
+    if best == -math.inf:
+        return f"s_next must allow an action, got only Q = -inf in state {s_next}"
+    return f"a must be an action that state {s} allows, got {a} with Q = -inf"

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from arkaq_edu._checks import number
+from arkaq_edu._checks import integer, number
 
 Schedule = Callable[[int], float]
+
+_store = object.__setattr__  # a frozen dataclass stores what was checked
 
 
 @dataclass(frozen=True)
@@ -19,13 +21,13 @@ class Power:
     start : float, default 1.0
         The first value, above 0.
     exponent : float, default 1.0
-        How fast it falls, above 0. Q-learning converges for exponents above 1/2 and up to 1: then
-        the rates sum to infinity, and their squares to a finite number.
+        How fast it falls, in (0, 10]. Q-learning converges for exponents above 1/2 and up to 1:
+        then the rates sum to infinity, and their squares to a finite number.
 
     Raises
     ------
     ValueError
-        If an argument is not above 0.
+        If an argument is out of range.
 
     References
     ----------
@@ -42,12 +44,13 @@ class Power:
     exponent: float = 1.0
 
     def __post_init__(self) -> None:
-        number("start", self.start, 0, open_low=True)
-        number("exponent", self.exponent, 0, open_low=True)
+        _store(self, "start", number("start", self.start, 0, open_low=True))
+        # Beyond 10, n to this power leaves the range of floats, or takes for ever.
+        _store(self, "exponent", number("exponent", self.exponent, 0, 10, open_low=True))
 
     def __call__(self, n: int) -> float:
         """Return the n-th value, n >= 1."""
-        return self.start / n**self.exponent
+        return self.start / integer("n", n, 1) ** self.exponent
 
 
 @dataclass(frozen=True)
@@ -84,13 +87,13 @@ class Exponential:
     floor: float = 0.0
 
     def __post_init__(self) -> None:
-        number("start", self.start, 0, open_low=True)
-        number("half_life", self.half_life, 0, open_low=True)
-        number("floor", self.floor, 0)
+        _store(self, "start", number("start", self.start, 0, open_low=True))
+        _store(self, "half_life", number("half_life", self.half_life, 0, open_low=True))
+        _store(self, "floor", number("floor", self.floor, 0))
 
     def __call__(self, n: int) -> float:
         """Return the n-th value, n >= 1."""
-        return max(self.start * 0.5 ** ((n - 1) / self.half_life), self.floor)
+        return max(self.start * 0.5 ** ((integer("n", n, 1) - 1) / self.half_life), self.floor)
 
 
 def value_at(value: float | Schedule, n: int) -> float:

@@ -31,7 +31,7 @@ import numpy as np
 from gymnasium.spaces import Discrete
 from numpy.typing import NDArray
 
-from arkaq_edu._checks import array, integer, number
+from arkaq_edu._checks import affordable, array, integer, number
 from arkaq_edu.mdp import compiled
 from arkaq_edu.mdp.model import MDP
 from arkaq_edu.mdp.prediction import discounted_returns
@@ -193,6 +193,8 @@ def learn(
             f"env must be Discrete, with the learner's {n_states} states and {n_actions} actions, "
             f"got observations {env.observation_space} and actions {env.action_space}"
         )
+    if seed is not None:
+        seed = integer("seed", seed)
     quiet = Quiet(tol)
     changes, returns, lengths, earned, length = [], [], [], 0.0, 0
     s = int(env.reset(seed=seed)[0])
@@ -375,7 +377,7 @@ def train(
         The world. Episodes start by ``mdp.start`` and end in ``mdp.ends``.
     learner : QLearner
         The learner, with the model's states and actions; its generator draws everything: three
-        numbers for each step.
+        numbers for each step. An action that the model does not allow gets Q = -inf.
     n_steps : int
         The number of steps, at least 1; the last episode may stay unfinished.
     temperature : float or callable, default infinity
@@ -389,8 +391,8 @@ def train(
     Raises
     ------
     ValueError
-        If an argument is out of range, the learner's table has another shape or holds a number
-        that is not finite, or every state of the model is an end.
+        If an argument is out of range, the learner's table has another shape or holds a value
+        that is not a number, or every state of the model is an end.
 
     References
     ----------
@@ -407,18 +409,25 @@ def train(
     n_steps = integer("n_steps", n_steps, 1)
     if learner.Q.shape != mdp.R.shape:
         raise ValueError(f"learner must have a table of {mdp.R.shape}, got {learner.Q.shape}")
-    array("Q", learner.Q, mdp.R.shape)
-    starts = np.where(mdp.ends, 0.0, mdp.start).cumsum()
-    if not starts[-1] > 0:
-        raise ValueError("mdp must be able to start in a state that is not an end")
     n_temperatures = n_steps if callable(temperature) else 1
     temperatures = [
         number("temperature", value_at(temperature, n + 1), 0) for n in range(n_temperatures)
     ]
+    affordable("n_steps", (n_steps, 3))
+    rates = learner.rates(n_steps)
+    array("Q", learner.Q, mdp.R.shape, allow_minus_infinity=True)
+    learner.Q[~mdp.allowed] = -np.inf
+    if (learner.Q.max(axis=1) == -np.inf).any():
+        s = int(learner.Q.max(axis=1).argmin())
+        raise ValueError(f"learner must allow an action in every state, got only -inf in state {s}")
+    starts = np.where(mdp.ends, 0.0, mdp.start).cumsum()
+    if not starts[-1] > 0:
+        raise ValueError("mdp must be able to start in a state that is not an end")
+    sums = mdp.cumulative
     changes, returns, lengths = np.empty(n_steps), np.empty(n_steps), np.empty(n_steps, np.int64)
     n_episodes = compiled.train(
-        learner.Q, learner.visits, mdp.cumulative, mdp.R, mdp.ends, starts / starts[-1],
-        learner.rng.random((n_steps, 3)), np.array(temperatures), learner.rates(n_steps),
+        learner.Q, learner.visits, sums.data, sums.indices, sums.indptr, mdp.R, mdp.ends,
+        starts / starts[-1], learner.rng.random((n_steps, 3)), np.array(temperatures), rates,
         learner.gamma, changes, returns, lengths,
     )  # fmt: skip
     return TrainingRun(changes, returns[:n_episodes].copy(), lengths[:n_episodes].copy())

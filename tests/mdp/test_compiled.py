@@ -71,6 +71,8 @@ class Model(gymnasium.Env):
     def __init__(self, mdp, u):
         self.observation_space, self.action_space = Discrete(mdp.n_states), Discrete(mdp.n_actions)
         self.mdp, self.u, self.t = mdp, u, 0
+        self.sums = mdp.T.cumsum(axis=2)
+        self.sums /= self.sums[:, :, -1:]
         starts = np.where(mdp.ends, 0, mdp.start)
         self.starts = (starts / starts.sum()).cumsum()
 
@@ -80,7 +82,7 @@ class Model(gymnasium.Env):
 
     def step(self, a):
         r = self.mdp.R[self.s, a]
-        self.s = int((self.mdp.cumulative[a, self.s] <= self.u[self.t, 2]).sum())
+        self.s = int((self.sums[a, self.s] <= self.u[self.t, 2]).sum())
         self.t += 1
         return self.s, r, bool(self.mdp.ends[self.s]), False, {}
 

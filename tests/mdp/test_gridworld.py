@@ -72,7 +72,7 @@ def test_feet_that_slip_turn_the_robot_away_from_the_bridge():
         ({"plan": []}, "plan must have rows of one length"),
         ({"plan": ["#o"]}, "plan must have a free square"),
         ({"slip": 1.5}, r"slip must be a number in \[0, 1\], got 1.5"),
-        ({"gamma": 1.0}, r"gamma must be a number in \[0, 1\), got 1.0"),
+        ({"gamma": 1.1}, r"gamma must be a number in \[0, 1\], got 1.1"),
     ],
 )
 def test_a_floor_that_is_none_is_refused(given_, message):

@@ -66,10 +66,10 @@ def test_ends_are_left_by_no_action_and_earn_nothing():
         ({"T": [[[0.5, 0.5]]]}, r"T must have shape \(A, S, S\), each at least 1, got \(1, 1, 2\)"),
         ({"T": np.zeros((0, 2, 2))}, "T must have shape"),
         ({"R": [[1.0, 2.0]]}, r"R must have shape \(2, 1\), got \(1, 2\)"),
-        ({"R": [[1.0], [math.inf]]}, r"R must hold finite numbers, got inf at \(1, 0\)"),
-        ({"gamma": 1.0}, r"gamma must be a number in \[0, 1\), got 1.0"),
+        ({"R": [[1.0], [math.inf]]}, r"R must hold finite numbers or -inf, got inf at \(1, 0\)"),
+        ({"gamma": 1.1}, r"gamma must be a number in \[0, 1\], got 1.1"),
         ({"R": [[1.0], [-2e307]]}, r"R must hold numbers of at most 1e\+100 in magnitude, got -2e\+307"),
-        ({"gamma": -0.1}, r"gamma must be a number in \[0, 1\), got -0.1"),
+        ({"gamma": -0.1}, r"gamma must be a number in \[0, 1\], got -0.1"),
         ({"start": [0.5, 0.4]}, "start must sum to 1"),
     ],
 )

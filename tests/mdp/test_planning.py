@@ -193,9 +193,9 @@ def test_the_best_actions_are_all_that_earn_as_much(seed):
     ("call", "message"),
     [
         (lambda m: value_iteration(m, tol=0), "tol must be a number in"),
-        (lambda m: value_iteration(m, horizon=0), "horizon must be an integer >= 1, got 0"),
-        (lambda m: value_iteration(m, horizon=2.5), "horizon must be an integer >= 1, got 2.5"),
-        (lambda m: error_bound(m, [0.0]), r"V must have shape \(2,\), got \(1,\)"),
+        (lambda m: value_iteration(m, horizon=0), "horizon must be an integer in .1, 1000000., got 0"),
+        (lambda m: value_iteration(m, horizon=2.5), "horizon must be an integer in .1, 1000000., got 2.5"),
+        (lambda m: error_bound(m, [0.0]), r"values must have shape \(2,\), got \(1,\)"),
         (lambda m: policy_evaluation(m, [0, 2]), r"policy must hold integers in \[0, 0\], got 2"),
         (lambda m: policy_evaluation(m, [0]), r"policy must have shape \(2,\), got \(1,\)"),
         (lambda m: policy_evaluation(m, [[1.0], [0.5]]), "policy must sum to 1"),

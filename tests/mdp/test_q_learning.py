@@ -224,7 +224,7 @@ def test_copies_are_independent_and_equal(clone):
     ("change", "message"),
     [
         ({"Q": np.zeros((2, 3))}, r"Q must have shape \(3, 2\), got \(2, 3\)"),
-        ({"Q": np.full((3, 2), np.nan)}, "Q must hold finite numbers, got nan"),
+        ({"Q": np.full((3, 2), np.nan)}, "Q must hold finite numbers or -inf, got nan"),
         ({"visits": np.zeros((2, 2), int)}, r"visits must have shape \(3, 2\), got \(2, 2\)"),
         ({"visits": np.full((3, 2), -1)}, "visits must hold integers >= 0, got -1"),
         ({"visits": np.zeros((3, 2))}, "visits must hold integers, got array"),
