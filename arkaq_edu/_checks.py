@@ -142,9 +142,13 @@ def array(
     array([ 3., nan])
     """
     x = value if type(value) is np.ndarray and value.dtype == np.float64 else _floats(name, value)
-    fits = shape is None or x.shape == shape or (
-        x.ndim == len(shape)
-        and all(want is None or want == have for want, have in zip(shape, x.shape, strict=True))
+    fits = (
+        shape is None
+        or x.shape == shape
+        or (
+            x.ndim == len(shape)
+            and all(want is None or want == have for want, have in zip(shape, x.shape, strict=True))
+        )
     )
     if not fits:
         wanted = str(tuple("any" if s is None else s for s in shape or ())).replace("'any'", "any")

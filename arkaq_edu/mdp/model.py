@@ -252,9 +252,8 @@ class MDP(Frozen):
             raise ValueError(f"s and a must have one shape, got {s.shape} and {a.shape}") from None
         r = self.R.T.ravel()[row]
         if (r == -np.inf).any():
-            raise ValueError(
-                f"a must be an action that its state allows, got {shown(a)} in {shown(s)}"
-            )
+            wrong, state = divmod(int(row.flat[(r == -np.inf).argmax()]), self.n_states)
+            raise ValueError(f"a must be an action that its state allows, got {wrong} in {state}")
         sums, u = self.cumulative, generator("rng", rng).random(row.shape)
         drawn = compiled.draws(sums.data, sums.indices, sums.indptr, row.ravel(), np.ravel(u))
         s_next = drawn.reshape(row.shape)[()]

@@ -40,7 +40,10 @@ def test_shared_argmax_shares():
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: argmax_shared([1.0, math.nan], rng=0), "values must hold finite numbers or -inf, got nan"),
+        (
+            lambda: argmax_shared([1.0, math.nan], rng=0),
+            "values must hold finite numbers or -inf, got nan",
+        ),
         (lambda: argmax_shared([], rng=0), "values must hold at least one action in a row"),
         (lambda: softmax([0.0, math.nan], 1.0), "values must hold finite numbers or -inf, got nan"),
         (lambda: softmax([0.0], math.nan), "temperature must be a number in"),

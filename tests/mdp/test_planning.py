@@ -9,13 +9,25 @@ from arkaq_edu.mdp import (
     best_actions,
     error_bound,
     finite_horizon,
+    grid_world,
+    modified_policy_iteration,
     policy_chances,
     policy_evaluation,
     policy_iteration,
     policy_model,
     value_iteration,
 )
-from tests.mdp.worlds import all_policies, random_mdp, seeds, undiscounted_return
+from tests.mdp.worlds import (
+    all_policies,
+    as_sparse,
+    forbidding,
+    random_mdp,
+    random_shortest_path,
+    seeds,
+    undiscounted_return,
+)
+
+SOLVERS = (value_iteration, modified_policy_iteration, policy_iteration)
 
 
 def value_by_series(mdp, policy):
@@ -42,7 +54,7 @@ def value_by_linear_program(mdp):
 def test_no_policy_earns_more_and_the_one_found_earns_as_much(seed):
     mdp = random_mdp(seed)
     best = np.max([value_by_series(mdp, p) for p in all_policies(mdp)], axis=0)
-    for values, policy in (value_iteration(mdp), policy_iteration(mdp)):
+    for values, policy in (solve(mdp) for solve in SOLVERS):
         np.testing.assert_allclose(values, best, atol=2e-9)
         np.testing.assert_allclose(value_by_series(mdp, policy), best, atol=1e-6)
 
@@ -59,7 +71,8 @@ def test_values_agree_with_the_linear_program(seed):
 def test_value_iteration_is_as_close_as_it_says(seed, tol):
     mdp = random_mdp(seed, max_states=10)
     exact, _ = policy_iteration(mdp)
-    assert np.abs(value_iteration(mdp, tol=tol)[0] - exact).max() <= tol * (1 + 1e-6)
+    for solve in (value_iteration, modified_policy_iteration):
+        assert np.abs(solve(mdp, tol=tol)[0] - exact).max() <= tol * (1 + 1e-6)
 
 
 @settings(max_examples=40, deadline=None)
@@ -193,14 +206,165 @@ def test_the_best_actions_are_all_that_earn_as_much(seed):
     ("call", "message"),
     [
         (lambda m: value_iteration(m, tol=0), "tol must be a number in"),
-        (lambda m: value_iteration(m, horizon=0), "horizon must be an integer in .1, 1000000., got 0"),
-        (lambda m: value_iteration(m, horizon=2.5), "horizon must be an integer in .1, 1000000., got 2.5"),
+        (
+            lambda m: value_iteration(m, horizon=0),
+            "horizon must be an integer in .1, 1000000., got 0",
+        ),
+        (
+            lambda m: value_iteration(m, horizon=2.5),
+            "horizon must be an integer in .1, 1000000., got 2.5",
+        ),
         (lambda m: error_bound(m, [0.0]), r"values must have shape \(2,\), got \(1,\)"),
         (lambda m: policy_evaluation(m, [0, 2]), r"policy must hold integers in \[0, 0\], got 2"),
         (lambda m: policy_evaluation(m, [0]), r"policy must have shape \(2,\), got \(1,\)"),
         (lambda m: policy_evaluation(m, [[1.0], [0.5]]), "policy must sum to 1"),
+        (lambda m: value_iteration(m, horizon=10**9), r"in \[1, 1000000\], got 1000000000"),
+        (lambda m: modified_policy_iteration(m, sweeps=-1), "sweeps must be an integer in"),
+        (
+            lambda m: finite_horizon(MDP([np.eye(300)], np.zeros((300, 1)), 0.9), 10**6),
+            "horizon must need at most 2,147,483,648 bytes, got 2,400,000,000 bytes",
+        ),
     ],
 )
 def test_bad_arguments_are_refused(call, message):
     with pytest.raises(ValueError, match=message):
         call(MDP([np.eye(2)], [[1.0], [2.0]], 0.9))
+
+
+@settings(max_examples=25, deadline=None)
+@given(seeds)
+def test_sparse_models_have_the_same_plans(seed):
+    dense = random_mdp(seed, max_states=8, sparse=True)
+    lean = as_sparse(dense)
+    for solve in SOLVERS:
+        (values, policy), (same, same_policy) = solve(dense), solve(lean)
+        np.testing.assert_allclose(same, values, atol=2e-9)
+        np.testing.assert_array_equal(same_policy, policy)
+    chances = np.random.default_rng(seed).dirichlet(np.ones(dense.n_actions), size=dense.n_states)
+    for policy in ([0] * dense.n_states, chances):
+        (T, R), (lean_T, lean_R) = policy_model(dense, policy), policy_model(lean, policy)
+        np.testing.assert_allclose(lean_T.toarray(), T, atol=1e-15)
+        np.testing.assert_allclose(lean_R, R, atol=1e-12)
+        np.testing.assert_allclose(
+            policy_evaluation(lean, policy), policy_evaluation(dense, policy), atol=1e-8
+        )
+
+
+@pytest.mark.parametrize("sweeps", [0, 1, 8, 200])
+def test_sweeps_between_improvements_change_only_the_time(sweeps):
+    mdp = random_mdp(7, max_states=12, gamma=0.99)
+    values, policy = modified_policy_iteration(mdp, sweeps=sweeps)
+    np.testing.assert_allclose(values, policy_iteration(mdp)[0], atol=1e-9)
+    assert (policy == policy_iteration(mdp)[1]).all()
+
+
+def test_the_bounds_end_value_iteration_long_before_the_change_is_small():
+    class Counting(MDP):
+        sweeps = 0
+
+        def action_values(self, V):
+            self.sweeps += 1
+            return super().action_values(V)
+
+    T = np.random.default_rng(0).dirichlet(np.ones(30), size=(3, 30))
+    mdp = Counting(T, np.random.default_rng(1).normal(size=(30, 3)), 0.9999)
+    values, _ = value_iteration(mdp)
+    assert mdp.sweeps < 50  # until the change itself is small: 200,000
+    np.testing.assert_allclose(values, policy_iteration(mdp)[0], atol=2e-9)
+
+
+@settings(max_examples=30, deadline=None)
+@given(seeds)
+def test_what_is_not_allowed_is_never_planned(seed):
+    rng = np.random.default_rng(seed)
+    mdp = random_mdp(seed, max_actions=4)
+    R = mdp.R.copy()
+    R[:, 1:][rng.random((mdp.n_states, mdp.n_actions - 1)) < 0.5] = -np.inf
+    mdp = MDP(mdp.T, R, mdp.gamma)
+    best = np.max([value_by_series(mdp, p) for p in all_policies(mdp)], axis=0)
+    for solve in SOLVERS:
+        for model in (mdp, as_sparse(mdp)):
+            values, policy = solve(model)
+            np.testing.assert_allclose(values, best, atol=2e-9)
+            assert mdp.allowed[np.arange(mdp.n_states), policy].all()
+    values, policy = value_iteration(mdp, horizon=3)
+    assert mdp.allowed[np.arange(mdp.n_states), policy].all() and np.isfinite(values).all()
+    assert (np.isneginf(finite_horizon(mdp, 3)) == ~mdp.allowed).all()
+
+
+def test_a_policy_that_is_not_allowed_is_refused():
+    mdp = forbidding([np.eye(2)] * 2, [[1.0, -np.inf], [0.0, 0.0]])
+    assert policy_evaluation(mdp, [0, 1]).tolist() == pytest.approx([10, 0])
+    for policy in ([1, 0], [[0.5, 0.5], [1, 0]]):
+        with pytest.raises(ValueError, match="policy must take allowed actions, got action 1 in"):
+            policy_evaluation(mdp, policy)
+
+
+@settings(max_examples=60, deadline=None)
+@given(seeds)
+def test_with_a_discount_of_one_the_plan_is_the_best_proper_policy(seed):
+    mdp = random_shortest_path(seed)
+    values = []
+    for policy in all_policies(mdp):
+        try:
+            values.append(policy_evaluation(mdp, policy))
+        except ValueError as error:
+            assert "policy must be proper when gamma is 1" in str(error)
+            chain = policy_model(mdp, policy)[0]
+            assert (np.linalg.matrix_power(chain, 1000)[:, mdp.ends].sum(axis=1) < 1e-3).any()
+    for model in (mdp, as_sparse(mdp)):
+        for solve in SOLVERS:
+            V, policy = solve(model)
+            np.testing.assert_allclose(V, np.max(values, axis=0), atol=1e-8)
+            np.testing.assert_allclose(policy_evaluation(model, policy), V, atol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("name", "known"),
+    [
+        ("FrozenLake-v1", 14 / 17),
+        ("FrozenLake8x8-v1", 1.0),
+        ("CliffWalking-v1", -13.0),
+        ("Taxi-v4", 7.93),
+    ],
+)
+def test_undiscounted_environments_have_their_known_returns(name, known):
+    mdp = MDP.from_gymnasium(name, gamma=1)
+    values, policy = value_iteration(mdp)
+    assert values @ mdp.start == pytest.approx(known, abs=5e-4)
+    assert policy_evaluation(mdp, policy) @ mdp.start == pytest.approx(known, abs=5e-4)
+
+
+def test_standing_still_for_nothing_is_no_way_out_of_a_cost():
+    """To wait costs nothing, to leave costs 5: the best policy that ends leaves."""
+    wait, leave = np.eye(2), [[0, 1], [0, 1]]
+    values, policy = policy_iteration(MDP([wait, leave], [[0, -5], [0, 0]], 1.0))
+    assert values.tolist() == [-5, 0] and policy[0] == 1
+
+
+def test_what_has_no_value_at_a_discount_of_one_is_refused():
+    wait, leave = np.eye(2), [[0, 1], [0, 1]]
+    earns = MDP([wait, leave], [[1, 0], [0, 0]], 1.0)
+    with pytest.raises(ValueError, match="R must let no loop earn without end when gamma is 1"):
+        value_iteration(earns)
+    with pytest.raises(ValueError, match=r"policy must be proper when gamma is 1 .* from state 0"):
+        policy_evaluation(earns, [0, 0])
+    assert value_iteration(earns, horizon=7)[0].tolist() == [7, 0]
+    endless = MDP([wait], [[1.0], [0.0]], 1.0)
+    with pytest.raises(ValueError, match=r"mdp must reach an end from every state .* from state 0"):
+        modified_policy_iteration(endless)
+    with pytest.raises(ValueError, match=r"gamma must be a number in \[0, 1\), got 1"):
+        error_bound(endless, [0.0, 0.0])
+
+
+def test_what_is_zero_up_to_rounding_is_a_positive_zero():
+    row = grid_world(["x.....o"], slip=0.0).mdp
+    wander = np.tile([0.5, 0.0, 0.5, 0.0], (7, 1))
+    for mdp in (row, as_sparse(row)):
+        V = policy_evaluation(mdp, wander)
+        assert V[[0, 3, 6]].tolist() == [0.0, 0.0, 0.0] and not np.signbit(V[[0, 3, 6]]).any()
+    chain = np.diag(np.ones(60), 1)
+    chain[-1, -1] = 1
+    R = np.eye(61)[:, [59]]
+    small = policy_evaluation(MDP([chain], R, 0.5), [0] * 61)
+    assert small.tolist() == [*(0.5 ** np.arange(59, -1, -1)), 0.0]

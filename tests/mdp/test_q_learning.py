@@ -313,7 +313,10 @@ def test_numpy_scalars_and_whole_rewards_are_welcome():
         ((0, 0, [0.0, np.nan], 0, False), r"r must hold finite numbers, got nan at \(1,\)"),
         ((0, 0, 0.0, [0.5], False), r"s_next must hold integers, got \[0.5\]"),
         (([0, 1], [0, 1, 0], 0.0, 0, False), "the columns must have one length"),
-        ((0, 0, [0.0, 1e101], 0, False), r"r must hold numbers of at most 1e\+100 in magnitude, got 1e\+101"),
+        (
+            (0, 0, [0.0, 1e101], 0, False),
+            r"r must hold numbers of at most 1e\+100 in magnitude, got 1e\+101",
+        ),
         (([[0]], 0, 0.0, 0, False), r"the columns must have shape \(N,\), got \(1, 1\)"),
         ((0, 0, 0.0, 0, False, [1, 0]), r"n_steps must hold integers >= 1, got 0 at \(1,\)"),
     ],
