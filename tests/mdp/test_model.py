@@ -77,7 +77,10 @@ def test_ends_are_left_by_no_action_and_earn_nothing():
         ({"gamma": -0.1}, r"gamma must be a number in \[0, 1\], got -0.1"),
         ({"start": [0.5, 0.4]}, "start must sum to 1"),
         ({"start": np.ma.masked_equal([1.0, 0.0], 0)}, "start must hold finite numbers, got nan"),
-        ({"T": [sparse.eye_array(2), sparse.eye_array(3)]}, r"T must have shape \(any, 2, 2\), got \(2, 3, 3\)"),
+        (
+            {"T": [sparse.eye_array(2), sparse.eye_array(3)]},
+            r"T must have shape \(any, 2, 2\), got \(2, 3, 3\)",
+        ),
         (
             {"T": [sparse.csr_array([[0.5, 0.4], [0, 1]])]},
             r"T must sum to 1 .* got 0.9 at \(0, 0\)",
