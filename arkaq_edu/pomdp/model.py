@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from arkaq_edu._checks import array, distribution
+from arkaq_edu._checks import array, distribution, number
 from arkaq_edu.mdp.model import MDP
 
 
@@ -84,7 +84,7 @@ class POMDP:
     ) -> None:
         self.mdp = MDP(T, R, gamma, start)
         self.T, self.R, self.start = self.mdp.T, self.mdp.R, self.mdp.start
-        self.gamma = self.mdp.gamma
+        self.gamma = number("gamma", gamma, 0, 1, open_high=True)
         self.n_states, self.n_actions = self.mdp.n_states, self.mdp.n_actions
         O_of = array("O", O, (self.n_actions, self.n_states, None))
         if not O_of.size:
