@@ -17,6 +17,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from arkaq_edu._checks import shown
+
 #: A way to compute an answer from the arguments of a case.
 Rule = Callable[..., Any]
 #: Draws the argument tuples on which an answer is tried.
@@ -65,6 +67,8 @@ def ask(function: Callable[..., Any], *arguments: Any) -> Any:
         raise ExerciseError(
             f"{name} is still empty: write its body, run its cell, then run this check again"
         ) from None
+    except SystemExit:
+        raise ExerciseError(f"{name} leaves Python: return the answer instead of exit()") from None
     except Exception as error:
         asked = ", ".join(map(_short, arguments))
         problem = f"{type(error).__name__}: {error}"
@@ -115,9 +119,8 @@ class Part:
         return [self._same(*pair) for pair in zip(answers, others, strict=True)]
 
     def _same(self, answer: Any, other: Any) -> bool:
-        try:
-            found, wanted = np.asarray(answer, dtype=float), np.asarray(other, dtype=float)
-        except (TypeError, ValueError):
+        found, wanted = _floats(answer), _floats(other)
+        if found is None or wanted is None:
             return False
         return found.shape == wanted.shape and bool(np.all(self.close(found, wanted)))
 
@@ -242,12 +245,9 @@ class Exercise:
 
     def numbers(self, answer: Any, *shapes: tuple[int, ...]) -> NDArray[np.float64]:
         """Return an answer as an array of one of these shapes, or say what it is instead."""
-        try:
-            found = np.asarray(answer, dtype=float)
-        except (TypeError, ValueError):
-            raise ExerciseError(
-                f"{self.name} should return numbers, not {_short(answer)}"
-            ) from None
+        found = _floats(answer)
+        if found is None:
+            raise ExerciseError(f"{self.name} should return numbers, not {_short(answer)}")
         if found.shape not in shapes:
             expected = self._expected(shapes[0])
             got = _in_words(found.shape)
@@ -377,6 +377,15 @@ def index(
     return answer
 
 
+def _floats(answer: Any) -> NDArray[np.float64] | None:
+    """Return an answer as floats, or None for text, complex numbers and what has no one shape."""
+    try:
+        found = np.asarray(answer)
+        return found.astype(float) if found.dtype.kind in "biufO" else None
+    except (TypeError, ValueError, OverflowError):
+        return None
+
+
 def _in_words(shape: tuple[int, ...]) -> str:
     if shape == ():
         return "one number"
@@ -388,6 +397,7 @@ def _in_words(shape: tuple[int, ...]) -> str:
 def _short(value: Any) -> str:
     if isinstance(value, np.random.Generator):
         return "rng"
-    array = isinstance(value, np.ndarray)
-    text = np.array2string(value, precision=3, threshold=6) if array else repr(value)
+    if not isinstance(value, np.ndarray):
+        return shown(value)
+    text = np.array2string(value, precision=3, threshold=6)
     return text if len(text) <= 60 else text[:57] + "..."

@@ -170,3 +170,22 @@ def test_the_right_answers_are_those_of_the_methods(seed):
     for pattern in stream[1:]:
         centers = exercises.present(pattern, centers, 0.3, 0.5)
     assert centers == pytest.approx(EuclideanART(0.3, 0.5).fit(stream).cluster_centers_)
+
+
+@pytest.mark.parametrize(
+    ("answer", "says"),
+    [
+        (lambda *given: [[1.0], [1.0, 2.0]], "should return numbers, not "),
+        (lambda *given: 10**400, "should return numbers, not "),
+        (lambda *given: "12", "should return numbers, not '12'"),
+        (lambda *given: 2j, "should return numbers, not 2j"),
+        (lambda *given: {"x": 1}, "should return numbers, not {'x': 1}"),
+        (lambda *given: exit(), "leaves Python: return the answer instead"),
+        (lambda *given: given, "."),
+        (lambda *given: 10**5000, "should return numbers, not "),
+    ],
+)
+@pytest.mark.parametrize("name", ["turn", "scale", "finite_sum", "correct"])
+def test_an_odd_answer_is_met_with_plain_words(name, answer, says):
+    with pytest.raises(ExerciseError, match=says):
+        getattr(exercises, name).check(answer, rng=0)
