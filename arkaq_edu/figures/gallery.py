@@ -14,23 +14,14 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from arkaq_edu.figures import (
-    approach,
-    arkaq,
-    art,
-    belief,
-    field,
-    goal,
-    kalman,
-    learning,
-    mdp,
-    pomdp,
-    segmentation,
-)
+from arkaq_edu import figures
 from arkaq_edu.figures.drawing.plot import Plot
 
-_CHAPTERS = (learning, mdp, belief, pomdp, kalman, art, segmentation, field, arkaq, approach, goal)
-_DRAWN: dict[str, Callable[..., Any]] = approach.TRAJECTORIES | {
+_CHAPTERS = (
+    figures.learning, figures.mdp, figures.belief, figures.pomdp, figures.kalman, figures.art,
+    figures.segmentation, figures.field, figures.arkaq, figures.approach, figures.goal,
+)  # fmt: skip
+_DRAWN: dict[str, Callable[..., Any]] = figures.approach.TRAJECTORIES | {
     name.removeprefix("figure_").replace("_", "."): function
     for chapter in _CHAPTERS
     for name, function in vars(chapter).items()

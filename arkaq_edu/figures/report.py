@@ -14,45 +14,7 @@ from string import Template
 import pandas as pd
 
 from arkaq_edu import __version__
-
-_PAGE = Template("""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>ARKAQ learning: thesis and reproduction</title>
-<style>
-body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 72rem; margin: 2rem auto;
-       padding: 0 1rem; }
-h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 2.5rem; }
-table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
-th, td { padding: .3rem .8rem; border-bottom: 1px solid #ddd; text-align: right; }
-th:first-child, td:first-child { text-align: left; }
-thead th { border-bottom: 2px solid #888; }
-.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(26rem, 1fr)); gap: 2rem; }
-figure { margin: 0; } figure img { width: 100%; height: auto; }
-figcaption { color: #555; font-size: .9rem; }
-</style>
-</head>
-<body>
-<h1>ARKAQ learning: thesis and reproduction</h1>
-<p>$summary</p>
-<h2>Numbers</h2>
-$table
-<p>Mean, lowest and highest over the seeds. "Way walked" counts only walks
-that reached the ball. A dash means that the thesis prints no such number.</p>
-<h2>Figures</h2>
-<div class="figures">
-$figures
-</div>
-<p>arkaq_edu $version</p>
-</body>
-</html>
-""")
-_FIGURE = Template("""<figure id="figure-$number">
-<img alt="Figure $number: $caption" src="data:image/png;base64,$png">
-<figcaption>Figure $number. $caption</figcaption>
-</figure>""")
+from arkaq_edu._files import replacing
 
 
 def write_report(
@@ -91,20 +53,20 @@ def write_report(
     (True, False)
     """
     folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    _replace(folder / "results.csv", results.to_csv(index=False))
+    with replacing(folder / "results.csv") as fresh:
+        results.to_csv(fresh, index=False)
     seeds = int(results.seeds.max())
-    text = results.copy()
-    for name in ("thesis", "mean", "low", "high"):
-        text[name] = [_number(value) for value in results[name]]
-    page = _PAGE.substitute(
-        summary=f"Every quantity was measured with {seeds} seed{'s' if seeds > 1 else ''}; "
-        "the figures show the first seed, except 5.40 and 5.41, which show the course's own study.",
+    columns = ("thesis", "mean", "low", "high")
+    text = results.assign(**{name: [_number(x) for x in results[name]] for name in columns})
+    page = Template(Path(__file__).with_name("report.html").read_text(encoding="utf-8"))
+    content = page.substitute(
+        seeds=f"{seeds} seed{'s' if seeds > 1 else ''}",
         table=text.to_html(index=False, border=0),
         figures="\n".join(_figure(number, draw, options) for number, draw in figures.items()),
         version=__version__,
     )
-    _replace(folder / "index.html", page)
+    with replacing(folder / "index.html") as fresh:
+        fresh.write_text(content, encoding="utf-8")
     return folder / "index.html"
 
 
@@ -123,9 +85,12 @@ def _figure(number: str, draw: Callable[..., object], options: Mapping[str, obje
     buffer = io.BytesIO()
     plt.gcf().savefig(buffer, format="png", dpi=110, bbox_inches="tight")
     plt.close("all")
-    caption = _caption(number, draw)
-    png = base64.b64encode(buffer.getvalue()).decode()
-    return _FIGURE.substitute(number=number, caption=caption, png=png)
+    caption, png = _caption(number, draw), base64.b64encode(buffer.getvalue()).decode()
+    return (
+        f'<figure id="figure-{number}">\n'
+        f'<img alt="Figure {number}: {caption}" src="data:image/png;base64,{png}">\n'
+        f"<figcaption>Figure {number}. {caption}</figcaption>\n</figure>"
+    )
 
 
 def _caption(number: str, draw: Callable[..., object]) -> str:
@@ -133,9 +98,3 @@ def _caption(number: str, draw: Callable[..., object]) -> str:
     line = (draw.__doc__ or "").strip().splitlines()[0]
     said = line.removeprefix(f"Draw figure {number}").lstrip(",: ").split("; see ")[0].rstrip(".")
     return html.escape(f"{said[:1].upper()}{said[1:]}.")
-
-
-def _replace(path: Path, text: str) -> None:
-    part = path.with_name(path.name + ".part")
-    part.write_text(text, encoding="utf-8")
-    os.replace(part, path)
