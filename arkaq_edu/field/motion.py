@@ -130,6 +130,26 @@ def stop(world: World) -> None:
     world.cycle(0.0, 0.0)
 
 
+def footstep_path(world: World, left: float, right: float, cycles: int) -> NDArray[np.float64]:
+    """Take equal footsteps (mm), and return the poses before the first and after each cycle.
+
+    Returns
+    -------
+    ndarray, shape (cycles + 1, 3)
+        x, y (mm) and heading (rad).
+
+    Examples
+    --------
+    >>> footstep_path(World(rng=0), 100.0, 100.0, cycles=2).shape
+    (3, 3)
+    """
+    poses = [world.pose]
+    for _ in range(_checks.integer("cycles", cycles, 1)):
+        world.cycle(left, right)
+        poses.append(world.pose)
+    return np.array(poses)
+
+
 def straight_walk(world: World, cycles: int = 20) -> NDArray[np.float64]:
     """Take equal footsteps of 100 mm up the field, and return the poses relative to the start.
 
@@ -156,11 +176,7 @@ def straight_walk(world: World, cycles: int = 20) -> NDArray[np.float64]:
     True
     """
     world.reset(ROBOT_START, (0.0, 1500.0))  # the ball is out of the way
-    poses = [world.pose]
-    for _ in range(_checks.integer("cycles", cycles, 1)):
-        world.cycle(100.0, 100.0)
-        poses.append(world.pose)
-    return np.array(poses) - ROBOT_START
+    return footstep_path(world, 100.0, 100.0, cycles) - ROBOT_START
 
 
 def look(world: World, pan: float) -> None:

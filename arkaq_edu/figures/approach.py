@@ -26,26 +26,29 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from arkaq_edu import _checks
 from arkaq_edu.arkaq import Arkaq
 from arkaq_edu.envs.ball_approach import ACTIONS
 from arkaq_edu.experiments import approach, learning_curve, thesis_numbers
 from arkaq_edu.experiments.approach.evaluation import Trajectory
-from arkaq_edu.experiments.segmentation import DISTANCE, ORIENTATION, in_view, map_of
+from arkaq_edu.experiments.segmentation import in_view
 from arkaq_edu.field import World
 from arkaq_edu.field.supervisor import CLOSE_ENOUGH, STRAIGHT_ENOUGH
 from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.drawing.diagram import write
 from arkaq_edu.figures.drawing.plot import Plot
 from arkaq_edu.figures.field import plot_bodies, plot_field
+from arkaq_edu.figures.segmentation import plot_cells
 
 _UP = Path([(-0.2, -1), (-0.2, 0), (-0.7, 0), (0, 1), (0.7, 0), (0.2, 0), (0.2, -1), (-0.2, -1)])
-#: An arrow for each action, which points where the action leads.
-MARKERS = {
+#: A mark for each action: an arrow points where the action leads.
+MARKERS: dict[str, Path | str] = {
     "forward": _UP,
     "left": _UP.transformed(Affine2D().rotate_deg(90)),
     "right": _UP.transformed(Affine2D().rotate_deg(-90)),
+    "kick": "o",
 }
 _WHITE = "#ffffff"
 
@@ -76,31 +79,34 @@ def plot_policy(
     ValueError
         If there is not one action for each state, or one that is not 0, 1 or 2.
     """
-    polygons, _ = map_of(centers)
-    chosen = _checks.array("actions", actions, (len(polygons),))
+    places = in_view(centers)
+    chosen = _checks.array("actions", actions, (len(places),))
     if not np.isin(chosen, range(len(ACTIONS))).all():
         raise ValueError(f"actions must be 0, 1 or 2, got {np.unique(chosen).tolist()}")
     ax = style.view_axes(ax, title=title)
     # The last two digits are the opacity: a quarter.
-    shades = [style.ACTIONS[ACTIONS[int(action)]] + "40" for action in chosen]
-    area = style.cells(polygons, shades, ax)
-    (left, right), (near, far) = ORIENTATION, DISTANCE
-    area.set_clip_path(Rectangle((left, near), right - left, far - near, transform=ax.transData))
-    places = in_view(centers)
+    area = plot_cells(centers, ax, [style.ACTIONS[ACTIONS[int(i)]] + "40" for i in chosen])
     marks = {
-        action: _arrows(places[chosen == number], action, ax, label=action)
+        action: plot_actions(places[chosen == number, 0], places[chosen == number, 1], action, ax)
         for number, action in enumerate(ACTIONS)
     }
     ax.legend(loc="upper center", ncols=3, frameon=False, borderaxespad=0.1)
-    return Plot(ax, f"{len(polygons)} states", cells=area, marks=marks)
+    return Plot(ax, f"{len(places)} states", cells=area, marks=marks)
 
 
-def _arrows(places: NDArray[np.float64], action: str, ax: Axes, label: str) -> Line2D:
-    (arrows,) = ax.plot(
-        *places.T, linestyle="none", marker=MARKERS[action], markersize=8,
-        color=style.ACTIONS[action], markeredgecolor=style.INK, markeredgewidth=0.3, label=label,
-    )  # fmt: skip
-    return arrows
+def plot_actions(x: ArrayLike, y: ArrayLike, action: str, ax: Axes, **look: Any) -> Line2D:
+    """Draw an action's mark at places; `look` is passed to `matplotlib.axes.Axes.plot`.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> plot_actions([0, 1], [2, 2], "left", Figure().subplots()).get_label()
+    'left'
+    """
+    usual: dict[str, Any] = {"markersize": 8, "markeredgewidth": 0.3, "label": action}
+    (marks,) = ax.plot(x, y, linestyle="none", color=style.ACTIONS[action], **(usual | look))
+    marks.set(marker=MARKERS[action], markeredgecolor=style.INK)
+    return marks
 
 
 def figure_5_16(ax: Axes | None = None, *, agent: Arkaq | None = None) -> Plot:
@@ -171,12 +177,9 @@ def plot_learning(agent: Arkaq, ax: Axes | None = None, *, window: int = 50) -> 
     True
     """
     cycles, reward = learning_curve(agent, window)
-    ax = style.axes(
-        ax,
-        xlabel="cycle of Q-learning",
-        ylabel=f"reward of an episode, mean of {window}",
-        title=f"reward of {window} episodes: {reward[0]:.0f} at first, {reward[-1]:.0f} at the end",
-    )
+    title = f"reward of {window} episodes: {reward[0]:.0f} at first, {reward[-1]:.0f} at the end"
+    ylabel = f"reward of an episode, mean of {window}"
+    ax = style.axes(ax, xlabel="cycle of Q-learning", ylabel=ylabel, title=title)
     (curve,) = ax.plot(cycles, reward, color=style.OURS)
     switch = ax.axvline(agent.learning.exploration, color=style.QUIET, ls="--", lw=1)
     low, high = min(0.0, reward.min() - 5), 155 if agent.task == "approach" else 105
@@ -216,13 +219,11 @@ def plot_view(walked: Trajectory, ax: Axes | None = None, *, title: str = "") ->
     (truth,) = ax.plot(looks.orientation, looks.distance, color=style.QUIET, lw=1, label="true")
     estimates = {}
     for number, action in enumerate(ACTIONS):
-        then = looks[looks.action == number][["estimated_orientation", "estimated_distance"]]
-        label = f"estimate, then {action}"
-        estimates[action] = _arrows(then.to_numpy(), action, ax, label=label)
-    sightings = style.measurements(
-        looks.seen_orientation, looks.seen_distance, ax, markersize=5, markeredgewidth=0.8,
-        label="seen",
-    )  # fmt: skip
+        then = looks[looks.action == number]
+        place = then.estimated_orientation, then.estimated_distance
+        estimates[action] = plot_actions(*place, action, ax, label=f"estimate, then {action}")
+    look = {"markersize": 5, "markeredgewidth": 0.8, "label": "seen"}
+    sightings = style.measurements(looks.seen_orientation, looks.seen_distance, ax, **look)
     ax.legend(loc="best", fontsize="small", frameon=False)
     return Plot(ax, truth=truth, sightings=sightings, estimates=estimates)
 
@@ -231,14 +232,11 @@ def _draw_end(ax: Axes) -> None:
     """Mark where the walk ends: within 500 mm, and there the strip that earns the +50."""
     _, right = ax.get_xlim()
     ax.axhline(CLOSE_ENOUGH, color=style.QUIET, lw=0.8, ls=":")
-    ax.text(
-        right, CLOSE_ENOUGH, "reached ", ha="right", va="top", fontsize="small", color=style.QUIET
-    )
-    strip = Rectangle(
-        (-STRAIGHT_ENOUGH, 0), 2 * STRAIGHT_ENOUGH, CLOSE_ENOUGH, color=style.CELLS[4], lw=0
-    )
-    ax.add_patch(strip)
-    ax.text(0, CLOSE_ENOUGH / 2, "+50", ha="center", va="center", fontsize="small")
+    look = {"fontsize": "small", "va": "top", "color": style.QUIET}
+    write(ax, (right, CLOSE_ENOUGH), "reached ", ha="right", **look)
+    corner, width = (-STRAIGHT_ENOUGH, 0), 2 * STRAIGHT_ENOUGH
+    ax.add_patch(Rectangle(corner, width, CLOSE_ENOUGH, color=style.CELLS[4], lw=0))
+    write(ax, (0, CLOSE_ENOUGH / 2), "+50", fontsize="small", color="black")
 
 
 def plot_above(walked: Trajectory, ax: Axes | None = None, *, title: str = "") -> Plot:
@@ -270,10 +268,8 @@ def plot_above(walked: Trajectory, ax: Axes | None = None, *, title: str = "") -
     world = World(rng=0)
     world.reset((last.x, last.y, last.heading), (last.ball_x, last.ball_y))
     ax = plot_field(world, ax, title=title or walked.summary).ax
-    (straight,) = ax.plot(
-        [looks.x.iloc[0], last.ball_x], [looks.y.iloc[0], last.ball_y], "--", color=_WHITE, lw=1,
-        label="straight line",
-    )  # fmt: skip
+    line = [looks.x.iloc[0], last.ball_x], [looks.y.iloc[0], last.ball_y]
+    (straight,) = ax.plot(*line, "--", color=_WHITE, lw=1, label="straight line")
     (path,) = ax.plot(looks.x, looks.y, color=_WHITE, lw=2, label="path")
     bodies = plot_bodies(looks[["x", "y", "heading"]].iloc[:-1:5], ax, edgecolors=_WHITE)
     ax.legend(loc="lower right", fontsize="small", labelcolor="white", facecolor="#2c5f3a")
@@ -281,22 +277,11 @@ def plot_above(walked: Trajectory, ax: Axes | None = None, *, title: str = "") -
 
 
 #: The trajectory of each figure, in the robot's view or from above.
-_TRAJECTORY_FIGURES = {
-    "5.17": (1, plot_view),
-    "5.18": (2, plot_view),
-    "5.19": (3, plot_view),
-    "5.20": (4, plot_view),
-    "5.21": (5, plot_view),
-    "5.22": (6, plot_view),
-    "5.23": (6, plot_above),
-    "5.24": (7, plot_view),
-    "5.25": (8, plot_view),
-    "5.26": (9, plot_view),
-    "5.27": (9, plot_above),
-    "5.28": (10, plot_view),
-    "5.29": (10, plot_above),
-    "5.30": (11, plot_view),
-}
+_IN_VIEW = {
+    "5.17": 1, "5.18": 2, "5.19": 3, "5.20": 4, "5.21": 5, "5.22": 6, "5.24": 7, "5.25": 8,
+    "5.26": 9, "5.28": 10, "5.30": 11,
+}  # fmt: skip
+_FROM_ABOVE = {"5.23": 6, "5.27": 9, "5.29": 10}
 
 
 def _trajectory_figure(figure: str, number: int, plot: Callable[..., Plot]) -> Callable[..., Plot]:
@@ -311,6 +296,8 @@ def _trajectory_figure(figure: str, number: int, plot: Callable[..., Plot]) -> C
 
 
 #: The functions that draw figures 5.17 to 5.30, by number.
-TRAJECTORIES: dict[str, Callable[..., Any]] = {
-    figure: _trajectory_figure(figure, *row) for figure, row in _TRAJECTORY_FIGURES.items()
+TRAJECTORIES = {
+    figure: _trajectory_figure(figure, number, plot)
+    for table, plot in ((_IN_VIEW, plot_view), (_FROM_ABOVE, plot_above))
+    for figure, number in table.items()
 }

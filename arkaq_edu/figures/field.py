@@ -14,7 +14,6 @@ the camera sees 0.497 rad (28.4°) to each side, the thesis takes 0.5 rad
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -39,13 +38,10 @@ from arkaq_edu.figures.drawing.plot import Plot
 
 #: The modules of figure 5.4: their places, and whether the thesis's experiments use them.
 MODULES: dict[str, tuple[Place, bool]] = {
-    "vision": ((1.0, 2.6), True),
-    "localization": ((3.4, 2.6), False),
-    "planner": ((5.8, 2.6), False),
-    "motion": ((8.2, 2.6), True),
-    "communication": ((4.6, 3.9), False),
-    "ARKAQ": ((4.6, 1.1), True),
-}
+    "vision": ((1.0, 2.6), True), "localization": ((3.4, 2.6), False),
+    "planner": ((5.8, 2.6), False), "motion": ((8.2, 2.6), True),
+    "communication": ((4.6, 3.9), False), "ARKAQ": ((4.6, 1.1), True),
+}  # fmt: skip
 #: The settings of figure 5.2: left and right footstep (mm), head (rad).
 SETTINGS = (90.0, 110.0, -0.3)
 
@@ -72,18 +68,13 @@ def plot_bodies(poses: ArrayLike, ax: Axes | None = None, **look: Any) -> PolyCo
     """
     ax = ax or style.axes()
     outlines = [body_outline(*pose) for pose in _checks.array("poses", poses, (None, 3)).tolist()]
-    bodies = PolyCollection(outlines, **({"facecolors": "none", "edgecolors": style.INK} | look))
+    bodies = PolyCollection(outlines, facecolors="none", **({"edgecolors": style.INK} | look))
     ax.add_collection(bodies)
     return bodies
 
 
 def plot_field(
-    world: World,
-    ax: Axes | None = None,
-    *,
-    title: str = "",
-    trail: Sequence[tuple[float, float]] = (),
-    sight: bool = False,
+    world: World, ax: Axes | None = None, *, title: str = "", sight: bool = False
 ) -> Plot:
     """Draw the field from above, with axes in millimeters.
 
@@ -95,8 +86,6 @@ def plot_field(
         Where to draw; by default on new axes.
     title : str
         The fact that the picture states.
-    trail : sequence of (x, y)
-        The path of the robot so far (mm).
     sight : bool
         Whether to show the camera's field of view.
 
@@ -111,10 +100,9 @@ def plot_field(
     >>> plot_field(World(rng=0), Figure().subplots(), title="kick-off")
     kick-off
     """
-    ax = style.axes(
-        ax, xlabel="x, toward the blue goal (mm)", ylabel="y, to the left (mm)", title=title
-    )
-    image = ax.imshow(bird_view(world, trail=trail, sight=sight), extent=EXTENT)
+    xlabel, ylabel = "x, toward the blue goal (mm)", "y, to the left (mm)"
+    ax = style.axes(ax, xlabel=xlabel, ylabel=ylabel, title=title)
+    image = ax.imshow(bird_view(world, sight=sight), extent=EXTENT)
     ax.set(xticks=range(-3000, 3001, 1000), yticks=range(-2000, 2001, 1000))
     return Plot(ax, "the field from above", image=image)
 
@@ -138,13 +126,11 @@ def figure_5_1(ax: Axes | None = None) -> Plot:
     plot = plot_field(world, ax, title="the robot's world, 6,000 x 4,000 mm, from above")
     goal = pitch.LENGTH / 2 - pitch.BOX_DEPTH / 2, 0.0  # beside it, where a name has room
     places = {"robot": world.pose[:2], "ball": world.ball, "goal": goal}
-    names = {
-        name: plot.ax.annotate(
-            name, place, xytext=(0, 0) if name == "goal" else (0, -22),
-            textcoords="offset points", ha="center", va="center", color="white", fontsize=9,
-        )
-        for name, place in places.items()
-    }  # fmt: skip
+    names = {}
+    for name, place in places.items():
+        below = 0, 0 if name == "goal" else -22
+        look = {"va": "center", "color": "white", "fontsize": 9}
+        names[name] = style.tag(plot.ax, place, name, below, **look)
     return Plot(plot.ax, image=plot.image, names=names)
 
 
@@ -166,31 +152,24 @@ def figure_5_2(ax: Axes | None = None) -> Plot:
     left, right, head = SETTINGS
     world = World(rng=0)
     world.reset((-800.0, -500.0, 0.0), (1000.0, 300.0))
-    trail = [world.pose[:2]]
-    for _ in range(5):
-        world.cycle(left, right)
-        trail.append(world.pose[:2])
+    trail = motion.footstep_path(world, left, right, cycles=5)[:, :2].tolist()
     motion.look(world, head)
     ax = style.axes(ax, title=f"five steps of {left:.0f} and {right:.0f} mm, then a look aside")
     ax.axis("off")
-    ends = {
-        "left stride (mm)": LONGEST_FOOTSTEP,
-        "right stride (mm)": LONGEST_FOOTSTEP,
-        "head (rad)": world.head.reach,
-    }
-    handles = {
-        name: _plot_slider(ax, 0.93 - 0.13 * row, name, SETTINGS[row], end)
-        for row, (name, end) in enumerate(ends.items())
-    }
+    sliders = (
+        ("left stride (mm)", left, LONGEST_FOOTSTEP),
+        ("right stride (mm)", right, LONGEST_FOOTSTEP),
+        ("head (rad)", head, world.head.reach),
+    )
+    handles = {}
+    for row, (name, value, end) in enumerate(sliders):
+        handles[name] = _plot_slider(ax, 0.93 - 0.13 * row, name, value, end)
     eye, above = ax.inset_axes((0.0, 0.0, 0.4, 0.54)), ax.inset_axes((0.42, 0.0, 0.58, 0.54))
     eye.axis("off")
     above.axis("off")
-    return Plot(
-        ax,
-        handles=handles,
-        eye=eye.imshow(Camera().picture(world)),
-        above=above.imshow(bird_view(world, trail=trail), extent=EXTENT),
-    )
+    picture = eye.imshow(Camera().picture(world))
+    map_ = above.imshow(bird_view(world, trail=trail), extent=EXTENT)
+    return Plot(ax, handles=handles, eye=picture, above=map_)
 
 
 def _plot_slider(ax: Axes, y: float, name: str, value: float, end: float) -> Line2D:
@@ -281,11 +260,7 @@ def figure_5_4(ax: Axes | None = None) -> Plot:
 
 
 def figure_5_5(
-    ax: Axes | None = None,
-    *,
-    cycles: int = 20,
-    n: int = 12,
-    rng: int | np.random.Generator = 0,
+    ax: Axes | None = None, *, cycles: int = 20, n: int = 12, rng: int | np.random.Generator = 0
 ) -> Plot:
     """Draw figure 5.5: told to walk straight, the robot drifts left and turns right.
 
@@ -328,10 +303,8 @@ def figure_5_5(
     x, y, heading = drift[-1]
     aside = f"{abs(y):.0f} mm to the {'left' if y > 0 else 'right'}"
     turned = f"turned {abs(heading):.3f} rad to the {'left' if heading > 0 else 'right'}"
-    ax = style.axes(
-        ax, xlabel="way ahead (mm)", ylabel="to the left (mm)",
-        title=f'after {x / 1000:.1f} m "straight": drift {aside}, {turned}',
-    )  # fmt: skip
+    title = f'after {x / 1000:.1f} m "straight": drift {aside}, {turned}'
+    ax = style.axes(ax, xlabel="way ahead (mm)", ylabel="to the left (mm)", title=title)
     (straight,) = ax.plot(*meant[:, :2].T, "--", color=style.QUIET, label="meant")
     reference = plot_bodies(meant[::5], ax, edgecolors=style.QUIET, linestyles="--")
     walks = LineCollection(varied, colors=style.OURS, lw=0.7, alpha=0.4, label=f"{n} walks")
@@ -340,9 +313,8 @@ def figure_5_5(
     bodies = plot_bodies(drift[::5], ax, edgecolors=style.OURS)
     ax.set(aspect="equal", xlim=(-250, meant[-1, 0] + 250), ylim=(-350, 550))
     ax.legend(loc="upper left", ncols=3, frameon=False)
-    return Plot(
-        ax, walked=walked, bodies=bodies, straight=straight, reference=reference, walks=walks
-    )
+    drawn: dict[str, Any] = {"walked": walked, "bodies": bodies, "straight": straight}
+    return Plot(ax, reference=reference, walks=walks, **drawn)
 
 
 def figure_5_7(ax: Axes | None = None) -> Plot:
@@ -412,17 +384,15 @@ def figure_5_8(
     return Plot(ax, fact, panels=(left, right), thesis=thesis, area=area)
 
 
-def _plot_places(ax: Axes, name: str, places: list[tuple[float, float]]) -> Line2D:
-    distance, orientation = np.array(places).T
+def _plot_places(ax: Axes, name: str, drawn: list[tuple[float, float]]) -> Line2D:
+    distance, orientation = np.array(drawn).T
     title = f"{name}: {(distance < 1000).mean():.0%} within 1 m"
     ax = style.axes(ax, xlabel="aside (mm), left is left", ylabel="ahead (mm)", title=title)
     rim = np.linspace(-FIELD_OF_VIEW / 2, FIELD_OF_VIEW / 2, 30)
     border = MAX_BALL_DISTANCE * np.array([np.sin(rim), np.cos(rim)])
     ax.plot(*np.pad(border, ((0, 0), (1, 1))), color=style.QUIET, lw=1)
-    (marks,) = ax.plot(
-        distance * np.sin(orientation), distance * np.cos(orientation),
-        "o", color=style.INK, markersize=1.6, markeredgewidth=0,
-    )  # fmt: skip
+    places = distance * np.array([np.sin(orientation), np.cos(orientation)])
+    (marks,) = ax.plot(*places, "o", color=style.INK, markersize=1.6, markeredgewidth=0)
     ax.set(aspect="equal", xlim=(2200, -2200), ylim=(0, 4300), xticks=(2000, 0, -2000))
     return marks
 
@@ -525,10 +495,8 @@ def plot_kicks(measured: pd.DataFrame, simulated: pd.DataFrame, ax: Axes | None 
     count = f"{len(measured)} kick{'s' * (len(measured) != 1)}"
     title = f"{count} of a real robot, {len(simulated)} simulated"
     ax = style.axes(ax, xlabel="ahead (mm)", ylabel="to the left (mm)", title=title)
-    (ours,) = ax.plot(
-        simulated.x, simulated.y, "o", color=style.OURS, markersize=4, markeredgewidth=0,
-        label="simulated",
-    )  # fmt: skip
+    (ours,) = ax.plot(simulated.x, simulated.y, "o", color=style.OURS, label="simulated")
+    ours.set(markersize=4, markeredgewidth=0)
     theirs = style.measurements(measured.x, measured.y, ax, markersize=6, label="real")
     ax.plot(0, 0, "+", color=style.INK, markersize=10)
     ax.set(aspect="equal", xlim=(-200, 4500), ylim=(-1900, 1900))
@@ -569,15 +537,12 @@ def plot_distance_error(
     y = _checks.array("error", error, (len(x),))
     exponent, factor = fit_power(x, y)
     title = f"the error goes as distance to the power {exponent:.2f}"
-    ax = style.axes(
-        ax, xlabel="distance (mm)", ylabel="error of the distance seen (mm)", title=title
-    )
+    ylabel = "error of the distance seen (mm)"
+    ax = style.axes(ax, xlabel="distance (mm)", ylabel=ylabel, title=title)
     along = np.geomspace(x.min(), x.max(), 30)
     (fit,) = ax.plot(along, factor * along**exponent, color=style.OURS, label="fit")
-    (pinhole,) = ax.plot(
-        along, Camera().distance_error(along, pixels), "--", color=style.QUIET,
-        label=f"pinhole, {pixels:g} pixels off",
-    )  # fmt: skip
+    (pinhole,) = ax.plot(along, Camera().distance_error(along, pixels), "--", color=style.QUIET)
+    pinhole.set_label(f"pinhole, {pixels:g} pixels off")
     marks = style.measurements(x, y, ax, label="measured")
     ax.set(xscale="log", yscale="log")
     for axis in (ax.xaxis, ax.yaxis):

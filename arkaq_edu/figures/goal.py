@@ -29,16 +29,12 @@ from arkaq_edu.arkaq import Arkaq, Sensing
 from arkaq_edu.envs.score_goal import ACTIONS
 from arkaq_edu.experiments import goal, thesis_numbers
 from arkaq_edu.experiments.goal.task import Distance
-from arkaq_edu.figures.approach import MARKERS, policy_title
+from arkaq_edu.figures.approach import plot_actions, policy_title
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.figures.drawing.plot import Plot
 
-#: The color and the mark of each action: where it turns the robot, or the ball.
-MARKS = {
-    "turn left": ("left", MARKERS["left"]),
-    "turn right": ("right", MARKERS["right"]),
-    "kick": ("kick", "o"),
-}
+#: Each action's color and mark: those of the way in which it turns the robot, or of the kick.
+MARKS = {"turn left": "left", "turn right": "right", "kick": "kick"}
 _STRIP = 0.3  # height of the cells in the picture
 _TOP = {"near": 90, "far": 55}  # of the picture, in goals in 100 kicks
 
@@ -68,9 +64,8 @@ def plot_line(
     middles, ends = goal.cells(centers)
     ax = _line_axes(ax, title)
     area = _draw_cells(ends, [style.CELLS[2 * (i % 2)] for i in range(len(middles))], ax)
-    (dots,) = ax.plot(
-        middles, np.full(len(middles), _STRIP / 2), "o", color=style.INK, ms=5, clip_on=False
-    )
+    heights = np.full(len(middles), _STRIP / 2)
+    (dots,) = ax.plot(middles, heights, "o", color=style.INK, ms=5, clip_on=False)
     # A pattern at the end of the interval was clipped: the goal is somewhere beyond.
     inside = Sensing.goal().unscale(patterns[np.abs(patterns) < 1])
     counts, edges = np.histogram(inside, bins=100, range=(-0.5, 0.5))
@@ -162,17 +157,13 @@ def figure_5_39(ax: Axes | None = None, *, goal_agent: Arkaq | None = None) -> P
     chosen = agent.q.Q.argmax(axis=1)[order]
     ax = _line_axes(ax, policy_title(agent, chosen, ACTIONS, "goal centers, vigilance"))
     # The last two digits are the opacity: a quarter.
-    shades = [style.ACTIONS[MARKS[ACTIONS[i]][0]] + "40" for i in chosen]
-    area = _draw_cells(ends, shades, ax)
+    area = _draw_cells(ends, [style.ACTIONS[MARKS[ACTIONS[i]]] + "40" for i in chosen], ax)
+    look = {"markersize": 10, "markeredgewidth": 0.4, "clip_on": False}
     marks = {}
     for number, action in enumerate(ACTIONS):
-        color, marker = MARKS[action]
-        places = middles[chosen == number]
-        (marks[action],) = ax.plot(
-            places, np.full(len(places), _STRIP / 2), linestyle="none", marker=marker,
-            markersize=10, color=style.ACTIONS[color], markeredgecolor=style.INK,
-            markeredgewidth=0.4, clip_on=False, label=action,
-        )  # fmt: skip
+        x = middles[chosen == number]
+        y = np.full(len(x), _STRIP / 2)
+        marks[action] = plot_actions(x, y, MARKS[action], ax, label=action, **look)
     ax.set_ylim(0, 1.4 * _STRIP)
     ax.legend(loc="upper center", ncols=3, frameon=False)
     return Plot(ax, cells=area, marks=marks)
@@ -200,29 +191,25 @@ def plot_scores(
         ``thesis`` (hollow, only near, else None).
     """
     mean, std = goal.mean_curves(goal.load_study() if study is None else study, goal_distance)
-    ax = style.axes(ax, xlabel="kicks", ylabel="goals in 100 kicks")
-    colors = {"ARKAQ": style.OURS, "random actions": style.ACTIONS["left"]}
-    means, bands = {}, {}
-    for who, color in colors.items():
-        kicks = mean[who].index
-        means[who], bands[who] = style.band(kicks, mean[who], std[who], ax, color=color, label=who)
-    end = float(mean["ARKAQ"].index[-1])
-    oracle, limit = mean["oracle"].mean(), 100 * goal.best_policy(goal_distance).goals
-    (means["oracle"],) = ax.plot(
-        [0, end], [oracle, oracle], "--", color=style.QUIET, lw=1.2, label="oracle"
-    )
-    (best,) = ax.plot([0, end], [limit, limit], ":", color=style.INK, label="best there is")
-    thesis = None
-    if goal_distance == "near":
-        printed = [thesis_numbers()[f"goals (%), near, {who}"] for who in colors]
-        thesis = style.measurements(
-            [end] * 2, printed, ax, markersize=8, clip_on=False, label="thesis"
-        )
+    learners = ("ARKAQ", "random actions")
     said = [
         f"{who} from {mean[who].iloc[:2].mean():.0f} to {mean[who].iloc[-4:].mean():.0f} %"
-        for who in colors
+        for who in learners
     ]
-    ax.set_title(f"{goal_distance}: {', '.join(said)}", loc="left", fontsize="medium")
+    title = f"{goal_distance}: {', '.join(said)}"
+    ax = style.axes(ax, xlabel="kicks", ylabel="goals in 100 kicks", title=title)
+    curves = {who: (mean[who].index, mean[who], std[who]) for who in learners}
+    means, bands = style.bands(ax, curves, (style.OURS, style.ACTIONS["left"]))
+    end = float(mean["ARKAQ"].index[-1])
+    oracle, limit = mean["oracle"].mean(), 100 * goal.best_policy(goal_distance).goals
+    (means["oracle"],) = ax.plot([0, end], [oracle] * 2, "--", color=style.QUIET, lw=1.2)
+    means["oracle"].set_label("oracle")
+    (best,) = ax.plot([0, end], [limit] * 2, ":", color=style.INK, label="best there is")
+    thesis = None
+    if goal_distance == "near":
+        printed = [thesis_numbers()[f"goals (%), near, {who}"] for who in learners]
+        thesis = style.measurements([end] * 2, printed, ax, markersize=8, clip_on=False)
+        thesis.set_label("thesis")
     ax.set(xlim=(0, end), ylim=(0, _TOP[goal_distance]))
     ax.legend(loc="upper left", ncols=3, frameon=False, fontsize="small")
     return Plot(ax, means=means, bands=bands, best=best, thesis=thesis)

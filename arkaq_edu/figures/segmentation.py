@@ -18,12 +18,13 @@ Examples
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import acos, degrees
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.patches import Circle, Rectangle
 from matplotlib.quiver import Quiver
 from numpy.typing import ArrayLike, NDArray
@@ -39,17 +40,13 @@ from arkaq_edu.experiments.segmentation import (
     count_fact,
     in_view,
     map_of,
-)
+)  # fmt: skip
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.figures.drawing.plot import Plot
 
 
 def figure_4_1(
-    ax: Axes | None = None,
-    *,
-    vigilance: float = 0.8,
-    learning_rate: float = 0.3,
-    times: int = 3,
+    ax: Axes | None = None, *, vigilance: float = 0.8, learning_rate: float = 0.3, times: int = 3
 ) -> Plot:
     """Draw figure 4.1, a template that turns toward a pattern presented several times.
 
@@ -79,14 +76,15 @@ def figure_4_1(
     >>> figure_4_1(Figure().subplots())
     3 times x1: w1 turns from 15° to 38°, x1 lies at 50°
     """
-    patterns = np.array([1.25, 0.75])[:, None] * _directions([50, 100])
-    art = ART2A(vigilance, learning_rate).fit(_directions([15, 115]))
+    patterns = np.array([[1.25], [0.75]]) * style.directions(np.radians([50, 100]))
+    art = ART2A(vigilance, learning_rate).fit(style.directions(np.radians([15, 115])))
     before = art.cluster_centers_
     for _ in range(times):
         art.learn_one(patterns[0])
     after = art.cluster_centers_
 
-    start, end, aim = (np.degrees(np.arctan2(*v[::-1])) for v in (before[0], after[0], patterns[0]))
+    w1_x1 = np.array([before[0], after[0], patterns[0]])
+    start, end, aim = np.degrees(np.arctan2(w1_x1[:, 1], w1_x1[:, 0]))
     turn = f"w1 turns from {start:.0f}° to {end:.0f}°"
     ax = _plane(ax, f"{times} times x1: {turn}, x1 lies at {aim:.0f}°")
     ax.add_patch(Circle((0, 0), 1, fill=False, color=style.QUIET, linewidth=0.8))
@@ -135,11 +133,10 @@ def figure_4_2(
     art = EuclideanART.from_centers(old, [1, 1], vigilance, learning_rate)
     told = []
     for i, pattern in enumerate(patterns, 1):
-        gaps = np.linalg.norm(art.cluster_centers_ - pattern, axis=1)
-        n, j = art.n_clusters_, art.learn_one(pattern)
-        founded = art.n_clusters_ > n
-        place = "the nearest founds" if founded else f"m{j + 1} moves it"
-        told.append(f"x{i} at {gaps.min():.2f} from {place}" + f" m{j + 1}" * founded)
+        n, gap = art.n_clusters_, np.linalg.norm(art.cluster_centers_ - pattern, axis=1).min()
+        j = art.learn_one(pattern) + 1
+        place = f"m{j} moves it" if art.n_clusters_ == n else f"the nearest founds m{j}"
+        told.append(f"x{i} at {gap:.2f} from {place}")
 
     ax = _plane(ax, "; ".join(told))
     reach = [Circle(tuple(m), vigilance, fill=False, color=style.QUIET, ls="--") for m in old]
@@ -154,12 +151,6 @@ def figure_4_2(
     _name(ax, patterns, ["x1", "x2"], style.INK)
     ax.set(xlim=(-0.15, 1.5), ylim=(-0.15, 1.1))
     return Plot(ax, before=was, after=now, reach=reach, patterns=marks)
-
-
-def _directions(degrees: ArrayLike) -> NDArray[np.float64]:
-    """Return unit vectors at angles, shape (n, 2)."""
-    angles = np.radians(degrees)
-    return np.column_stack([np.cos(angles), np.sin(angles)])
 
 
 def _plane(ax: Axes | None, title: str) -> Axes:
@@ -177,9 +168,32 @@ def _name(
     ax: Axes, places: NDArray[np.float64], names: list[str], color: str, *, below: bool = False
 ) -> None:
     for place, name in zip(places, names, strict=False):
-        ax.annotate(
-            name, tuple(place), (8, -10 if below else 4), textcoords="offset points", color=color
-        )
+        style.tag(ax, place, name, (8, -10 if below else 4), color=color, va="baseline")
+
+
+def plot_cells(centers: ArrayLike, ax: Axes, colors: Sequence[str] | None = None) -> PolyCollection:
+    """Draw the cells of centers in the robot's view, by default in soft colors.
+
+    Parameters
+    ----------
+    centers : array_like, shape (n, 2)
+        Centers as scaled patterns (distance, orientation).
+    ax : matplotlib.axes.Axes
+        Where to draw.
+    colors : sequence of n str, optional
+        The color of each cell.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> len(plot_cells([[0, -0.5], [0, 0.5]], Figure().subplots()).get_paths())
+    2
+    """
+    polygons, numbers = map_of(centers)
+    area = style.cells(polygons, colors or [style.CELLS[number] for number in numbers], ax)
+    (left, right), (near, far) = ORIENTATION, DISTANCE
+    area.set_clip_path(Rectangle((left, near), right - left, far - near, transform=ax.transData))
+    return area
 
 
 def plot_centers(centers: ArrayLike, ax: Axes | None = None, *, title: str = "") -> Plot:
@@ -205,25 +219,19 @@ def plot_centers(centers: ArrayLike, ax: Axes | None = None, *, title: str = "")
     >>> plot_centers([[0, -0.5], [0, 0.5]], Figure().subplots()).centers.get_xdata()
     array([-0.25,  0.25])
     """
-    polygons, colors = map_of(centers)
-    n = len(polygons)
     ax = style.view_axes(ax, title=title)
-    area = style.cells(polygons, [style.CELLS[color] for color in colors], ax)
-    (left, right), (near, far) = ORIENTATION, DISTANCE
-    area.set_clip_path(Rectangle((left, near), right - left, far - near, transform=ax.transData))
+    area = plot_cells(centers, ax)
     across, up = in_view(centers).T
+    n = len(across)
     size = 2 * style.dot_radius(n)
     (dots,) = ax.plot(across, up, "o", color=style.INK, markersize=size, markeredgewidth=0)
     return Plot(ax, f"{n} centers", cells=area, centers=dots, n_centers=n)
 
 
 def figure_5_9(
-    ax: Axes | None = None,
-    *,
-    vigilance: float = 0.95,
-    patterns: ArrayLike | None = None,
+    ax: Axes | None = None, *, vigilance: float = 0.95, patterns: ArrayLike | None = None,
     learning_rate: float = ANGULAR_RATE,
-) -> Plot:
+) -> Plot:  # fmt: skip
     """Draw figure 5.9, the templates of the angular network and the sectors they stand for.
 
     The hollow mark is the thesis's example, a ball at 2100 mm and 0.3 rad. A ring marks the
@@ -260,26 +268,22 @@ def figure_5_9(
     art = ART2A(vigilance, learning_rate).fit(patterns)
     templates, n = art.cluster_centers_, art.n_clusters_
     title = f"{n} templates at cosine {vigilance:g}, an angle of {degrees(acos(vigilance)):.1f}°"
-    base = plot_centers(templates, ax, title=title)
+    plot = plot_centers(templates, ax, title=title)
     middle, tips = in_view([0.0, 0.0]), in_view(templates)
     arrows = LineCollection([[middle, tip] for tip in tips], colors=style.INK, linewidths=1)
-    base.ax.add_collection(arrows, autolim=False)
-    ball = 2100.0, 0.3
-    example = style.measurements(ball[1:], ball[:1], base.ax, marker="x")
-    own = tips[[art.category(SENSING.scale(ball))]]
-    chosen = style.measurements(own[:, 0], own[:, 1], base.ax, color=style.OURS, markersize=12)
-    return Plot(
-        base.ax, cells=base.cells, templates=arrows, example=example, chosen=chosen, n_templates=n
-    )
+    plot.ax.add_collection(arrows, autolim=False)
+    distance, orientation = ball = 2100.0, 0.3
+    example = style.measurements([orientation], [distance], plot.ax, marker="x")
+    x, y = tips[art.category(SENSING.scale(ball))]
+    chosen = style.measurements([x], [y], plot.ax, color=style.OURS, markersize=12)
+    marks: dict[str, Any] = {"templates": arrows, "example": example, "chosen": chosen}
+    return Plot(plot.ax, cells=plot.cells, n_templates=n, **marks)
 
 
 def plot_segmentation(
-    vigilance: float,
-    ax: Axes | None = None,
-    *,
-    patterns: ArrayLike | None = None,
+    vigilance: float, ax: Axes | None = None, *, patterns: ArrayLike | None = None,
     learning_rate: float | str = LEARNING_RATE,
-) -> Plot:
+) -> Plot:  # fmt: skip
     """Segment a stream of patterns and draw the centers, with the thesis's count and ours.
 
     Parameters

@@ -184,7 +184,7 @@ def test_an_action_has_a_color_and_a_direction_of_its_own():
     for action, marks in plot.marks.items():
         assert to_hex(marks.get_color()) == style.ACTIONS[action]
         assert marks.get_label() == action
-    tips = {a: figures.MARKERS[a].vertices[3] for a in figures.MARKERS}
+    tips = {a: figures.MARKERS[a].vertices[3] for a in plot.marks}
     assert tips["forward"] == pytest.approx([0, 1])
     assert tips["left"] == pytest.approx([-1, 0]) and tips["right"] == pytest.approx([1, 0])
     shades = [to_hex(color) for color in plot.cells.get_facecolors()]

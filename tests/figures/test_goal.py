@@ -80,7 +80,7 @@ def test_every_state_shows_its_greedy_action_in_its_color(agent):
     for number, action in enumerate(ACTIONS):
         expected = sorted(centers[chosen == number])
         assert sorted(plot.marks[action].get_xdata()) == pytest.approx(expected)
-        name = figures.MARKS[action][0]
+        name = figures.MARKS[action]
         assert to_hex(plot.marks[action].get_color()) == style.ACTIONS[name]
     assert f"{len(centers)} states (thesis 13) at vigilance 0.06" in repr(plot)
     # The lesson of the figure: turn to the goal, and kick where it is ahead.
