@@ -7,11 +7,14 @@ Thesis, sections 4.2 and 5.2.1.
 
 from __future__ import annotations
 
+from math import acos, degrees
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu import _checks
 from arkaq_edu.arkaq import Sensing, TrainingSettings
+from arkaq_edu.art import ART2A, EuclideanART, coverage, quantization_error
 from arkaq_edu.art.geometry import six_colors, voronoi_cells
 from arkaq_edu.experiments import approach
 from arkaq_edu.experiments.runs import thesis_numbers
@@ -26,6 +29,9 @@ LEARNING_RATE = TrainingSettings().learning_rate
 #: The update factor of the templates of figure 5.9. It is small, as the authors of ART 2-A advise:
 #: a template that swings leaves gaps behind, in which others are founded.
 ANGULAR_RATE = 0.1
+
+#: The two methods of the thesis's section 4.2.
+METHODS: dict[str, type[EuclideanART | ART2A]] = {"Euclidean": EuclideanART, "angular": ART2A}
 
 #: The orders in which a stream may be presented.
 ORDERS = ("as recorded", "shuffled", "sorted by distance")
@@ -155,3 +161,23 @@ def count_fact(n: int, vigilance: float) -> str:
     above = sorted(v for v in THESIS_COUNTS if v > vigilance)[:1]
     around = " and ".join(f"{THESIS_COUNTS[v]} at {v:g}" for v in below + above)
     return f"{ours}, the thesis printed {around}"
+
+
+def partition_fact(network: EuclideanART | ART2A, patterns: ArrayLike) -> str:
+    """Say how many categories a network has, and how well they hold the patterns.
+
+    Examples
+    --------
+    >>> patterns = [[0.5, 0.0], [0.5, 0.1], [-1.0, 1.0]]
+    >>> partition_fact(ART2A(0.9, 0.5).fit(patterns), patterns)
+    '2 categories at vigilance 0.9, a cosine: 25.8°; coverage 100.0 %, error 0.041'
+    """
+    n, at = network.n_clusters_, network.vigilance
+    counted = f"{n} categor{'y' if n == 1 else 'ies'} at vigilance {at:g}"
+    if isinstance(network, ART2A):
+        counted += f", a cosine: {degrees(acos(at)):.1f}°"
+    elif at in THESIS_COUNTS:
+        counted = count_fact(n, at)
+    covered = 100 * coverage(network, patterns)
+    error = quantization_error(patterns, network.predict(patterns))
+    return f"{counted}; coverage {covered:.1f} %, error {error:.3f}"

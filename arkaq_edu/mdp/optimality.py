@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -133,6 +134,96 @@ def best_chains(earned: ArrayLike) -> list[str]:
     earned = array("earned", earned, (len(CHAINS),))
     best = np.isclose(earned, earned.max())
     return [name for name, is_best in zip(CHAINS, best, strict=True) if is_best]
+
+
+@lru_cache(maxsize=4)
+def chain_curves(
+    longest: int, gammas: tuple[float, ...]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return what each chain earns per step, for all horizons and for all discounts.
+
+    The sum of h rewards is divided by h, and the discounted sum is multiplied by 1 - gamma.
+
+    Parameters
+    ----------
+    longest : int
+        The longest horizon, at least 1.
+    gammas : tuple of float
+        Discount rates in [0, 1).
+
+    Returns
+    -------
+    finite : ndarray, shape (longest, 3)
+        For the horizons 1, 2, ...
+    geometric : ndarray, shape (len(gammas), 3)
+
+    Examples
+    --------
+    >>> finite, geometric = chain_curves(5, (0.9,))
+    >>> finite[-1], geometric.round(2)
+    (array([1.2, 0. , 0. ]), array([[1.62, 5.9 , 5.85]]))
+    """
+    steps = np.arange(1, longest + 1)
+    finite = finite_horizon(delayed_rewards(), longest)[:, 0] / steps[:, np.newaxis]
+    geometric = [(1 - gamma) * discounted(delayed_rewards(gamma=gamma))[0] for gamma in gammas]
+    return finite, np.array(geometric)
+
+
+def chosen_chains(x: ArrayLike, curves: ArrayLike) -> tuple[NDArray[np.float64], list[int]]:
+    """Return where the best chain changes along an axis, and which is the best in between.
+
+    Parameters
+    ----------
+    x : array_like, shape (n,)
+        Places on the axis, for example horizons.
+    curves : array_like, shape (n, 3)
+        What each chain earns there.
+
+    Returns
+    -------
+    ends : ndarray, shape (k + 1,)
+        The first place, the changes halfway between two places, the last place.
+    chosen : list of k int
+        The index of the best chain, or 3 where several are best.
+
+    Examples
+    --------
+    >>> chosen_chains([1, 2, 3], [[1, 0, 0], [1, 0, 0], [1, 2, 2]])
+    (array([1. , 2.5, 3. ]), [0, 3])
+    """
+    x, curves = np.asarray(x, dtype=float), np.asarray(curves, dtype=float)
+    best = np.isclose(curves, curves.max(axis=1, keepdims=True))
+    chosen = np.where(best.sum(axis=1) == 1, best.argmax(axis=1), len(CHAINS))
+    changes = np.flatnonzero(np.diff(chosen))
+    ends = np.concatenate([x[:1], (x[changes] + x[changes + 1]) / 2, x[-1:]])
+    return ends, chosen[[0, *(changes + 1)]].tolist()
+
+
+def coins(x: float) -> str:
+    """Return what was earned in three digits, or without decimals if it is a thousand or more.
+
+    Examples
+    --------
+    >>> coins(58.46), coins(1035.6)
+    ('58.5', '1036')
+    """
+    return f"{x:.3g}" if x < 999.5 else f"{x:.0f}"
+
+
+def models_fact(horizon: int, gamma: float, earned: ArrayLike) -> str:
+    """Say which chains the three models choose, and what each chain earns.
+
+    Examples
+    --------
+    >>> models_fact(5, 0.9, earnings(5, 0.9))
+    'h = 5: upper (6, 0, 0); gamma = 0.9: middle (16.2, 59, 58.5); average: lower (2, 10, 11)'
+    """
+    told = []
+    for row in np.asarray(earned):
+        best = best_chains(row)
+        chosen = "any" if len(best) == len(CHAINS) else " or ".join(best)
+        told.append(f"{chosen} ({', '.join(map(coins, row))})")
+    return f"h = {horizon}: {told[0]}; gamma = {gamma:g}: {told[1]}; average: {told[2]}"
 
 
 def discounted(mdp: MDP) -> NDArray[np.float64]:

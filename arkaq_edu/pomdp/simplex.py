@@ -12,6 +12,9 @@ from arkaq_edu._checks import array, distribution
 #: Where the beliefs lie that are certain of one of three states: left, top, right.
 CORNERS = np.array([[0.0, 0.0], [0.5, math.sqrt(3) / 2], [1.0, 0.0]])
 
+#: The corners of a tetrahedron, the simplex of four states, as seen from outside.
+TETRAHEDRON = np.array([[0.0, 0.12], [0.42, 0.95], [1.0, 0.4], [0.6, -0.05]])
+
 
 def to_triangle(b: ArrayLike) -> NDArray[np.float64]:
     """Return where beliefs over three states lie in a triangle with sides of 1.

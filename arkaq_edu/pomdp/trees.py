@@ -68,6 +68,29 @@ class PolicyTree:
             tree, depth = tree.branches[0], depth + 1
         return depth
 
+    def nodes(self, steps: int) -> dict[tuple[int, ...], int]:
+        """Return the action of each node of the first steps, by the observations that lead there.
+
+        Parameters
+        ----------
+        steps : int
+            The number of steps, at least 1.
+
+        Returns
+        -------
+        dict of tuple of int to int
+            The root, (), comes first; each node comes before the nodes below it.
+
+        Examples
+        --------
+        >>> PolicyTree(0, (PolicyTree(2), PolicyTree(1))).nodes(2)
+        {(): 0, (0,): 2, (1,): 1}
+        """
+        found: dict[tuple[int, ...], int] = {(): self.action}
+        for z, branch in enumerate(self.branches if steps > 1 else ()):
+            found |= {(z, *seen): action for seen, action in branch.nodes(steps - 1).items()}
+        return found
+
     def text(self, pomdp: POMDP | None = None) -> str:
         """Return the tree as text: an action, and below it a line for each observation.
 

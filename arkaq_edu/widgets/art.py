@@ -7,28 +7,20 @@ from functools import partial
 from itertools import pairwise
 from typing import Any
 
-import ipywidgets
 import numpy as np
 
 from arkaq_edu import art
 from arkaq_edu.art import LETTERS, learned_norm, match_norm, reset_cosine
 from arkaq_edu.art.reset import COSINES
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.widgets.explorer import Explorer
-from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Text
+from arkaq_edu.widgets.explorer import Explorer, sized, slider
+from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Text, area, box
 
 #: Norms of r between which the surface changes its shade.
 LEVELS = (0.75, 0.8, 0.85, 0.9, 0.95)
 #: Where the slider of the letters stops.
 VIGILANCES = tuple(round(0.05 * step, 2) for step in range(21))
 _FAR, _WIDE = 1.5, 1.85  # where the curves end, and the axis, which leaves room for words
-
-
-def _slider(name: str, value: float, low: float, high: float, step: float) -> Any:
-    layout = {"width": "min(100%, 36em)"}
-    return ipywidgets.FloatSlider(
-        value, min=low, max=high, step=step, description=name, layout=layout
-    )
 
 
 def resonance_explorer() -> Explorer:
@@ -54,9 +46,9 @@ def resonance_explorer() -> Explorer:
     """
     return Explorer(
         draw_surface,
-        c=_slider("c", 0.1, 0.05, 0.5, 0.05),
-        d=_slider("d", 0.9, 0.5, 0.95, 0.05),
-        vigilance=_slider("vigilance", 0.95, 0.75, 0.99, 0.01),
+        c=slider("c", 0.1, 0.05, 0.5, 0.05, **sized("")),
+        d=slider("d", 0.9, 0.5, 0.95, 0.05, **sized("")),
+        vigilance=slider("vigilance", 0.95, 0.75, 0.99, 0.01, **sized("")),
     )
 
 
@@ -83,10 +75,7 @@ def draw_surface(c: float, d: float, vigilance: float) -> Scene:
 def _from_above(c: float, end: float, vigilance: float) -> Panel:
     cdz = np.linspace(0.002, _FAR, 150)
     borders = [0 * cdz, *(reset_cosine(level, cdz, c) for level in LEVELS), 0 * cdz + 1]
-    bands = [
-        np.column_stack([np.append(cdz, cdz[::-1]), np.append(low, high[::-1])])
-        for low, high in pairwise(borders)
-    ]
+    bands = [area(cdz, low, high) for low, high in pairwise(borders)]
     limit = reset_cosine(vigilance, cdz, c)
     seen = limit > 0
     seen[:-1] |= seen[1:]  # the line begins on the axis
@@ -97,25 +86,32 @@ def _from_above(c: float, end: float, vigilance: float) -> Panel:
     ]
     for level, border in zip(LEVELS, borders[1:-1], strict=True):
         if border[-1] > 0:
-            layers.append(Text(1.03 * _FAR, float(border[-1]), f"norm {level:g}"))
+            layers.append(_beside(border[-1], f"norm {level:g}"))
     cosine = float(reset_cosine(vigilance, end, c))
     if end <= 1 and cosine > 0:
         layers.append(Points([end], [cosine], 5.0, style.OURS))
-    words = "norm of c d z_J; reset below the thick line"
-    return Panel(words, "cos(u, z_J)", (0, _WIDE), (0, 1), layers, xticks=[0, 0.5, 1, 1.5])
+    return _panel("reset below the thick line", "cos(u, z_J)", (0, 1), layers)
 
 
 def _curves(c: float, end: float, vigilance: float) -> Panel:
-    layers = _end_of_learning(end, (0.7, 1.02))
+    heights = (0.7, 1.02)
+    layers = _end_of_learning(end, heights)
     end = min(end, _FAR)
     for cosine in COSINES:
         for cdz, dashed in ((np.linspace(0, end, 60), False), (np.linspace(end, _FAR, 60), True)):
             layers.append(Line(cdz, match_norm(cosine, cdz, c), dashed=dashed))
-        height = float(match_norm(cosine, _FAR, c))
-        layers.append(Text(1.03 * _FAR, height, f"cos {cosine:g}"))
+        layers.append(_beside(match_norm(cosine, _FAR, c), f"cos {cosine:g}"))
     layers.append(Line([0, _FAR], [vigilance, vigilance], style.OURS, 2.5))
-    words = "norm of c d z_J; thick: vigilance"
-    return Panel(words, "norm of r", (0, _WIDE), (0.7, 1.02), layers, xticks=[0, 0.5, 1, 1.5])
+    return _panel("thick: vigilance", "norm of r", heights, layers)
+
+
+def _panel(words: str, ylabel: str, heights: tuple[float, float], layers: list[Layer]) -> Panel:
+    xlabel, ticks = f"norm of c d z_J; {words}", [0, 0.5, 1, 1.5]
+    return Panel(xlabel, ylabel, (0, _WIDE), heights, layers, xticks=ticks)
+
+
+def _beside(height: Any, words: str) -> Text:
+    return Text(1.03 * _FAR, float(height), words)
 
 
 def _end_of_learning(end: float, ends: tuple[float, float]) -> list[Layer]:
@@ -142,7 +138,8 @@ def letters_explorer() -> Explorer:
     8 categories of 8 letters at vigilance 1
     """
     counts = {vigilance: art.learn_letters(vigilance).n_clusters_ for vigilance in VIGILANCES}
-    return Explorer(partial(draw_letters, counts), vigilance=_slider("vigilance", 0.5, 0, 1, 0.05))
+    vigilance = slider("vigilance", 0.5, 0, 1, 0.05, **sized(""))
+    return Explorer(partial(draw_letters, counts), vigilance=vigilance)
 
 
 def draw_letters(counts: Mapping[float, int], vigilance: float) -> Scene:
@@ -172,7 +169,6 @@ def draw_letters(counts: Mapping[float, int], vigilance: float) -> Scene:
 
 
 def _templates(network: art.ART1) -> Panel:
-    square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     points = np.array([(i % 5, 4 - i // 5) for i in range(25)])
     templates = network.cluster_centers_.astype(int)
     feet = [np.array([7 * (j % 3) + 1, 7.5 * (2 - j // 3) + 2]) for j in range(len(templates))]
@@ -180,7 +176,7 @@ def _templates(network: art.ART1) -> Panel:
     for j, (left, bottom) in enumerate(feet):
         members = [name for name, k in zip(LETTERS, network.labels_, strict=True) if k == j]
         names.append(Text(left, bottom - 0.9, " ".join(members) or "none now"))
-    squares = [square + foot + point for foot in feet for point in points]
+    squares = [box(0, 1, 0, 1) + foot + point for foot in feet for point in points]
     view, palette = (0.0, 21.5, 0.0, 22.5), ["#eeeeee", style.INK]
     grids = Cells(squares, templates.ravel().tolist(), view, palette, border=0.8)
     words = "templates, each above its letters"

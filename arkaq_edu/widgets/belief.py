@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
+from itertools import combinations
 from typing import Any
 
 import ipywidgets
@@ -13,45 +14,16 @@ from numpy.typing import NDArray
 
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.figures.drawing.style import probability
-from arkaq_edu.pomdp import POMDP, Trajectory, entropy, problem, successors, to_triangle, trajectory
-from arkaq_edu.widgets.explorer import Explorer
-from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Text
+from arkaq_edu.pomdp import POMDP, Trajectory, entropy, problem, successors
+from arkaq_edu.pomdp.simplex import CORNERS, TETRAHEDRON
+from arkaq_edu.pomdp.turns import WORLD, follow, possible
+from arkaq_edu.widgets.explorer import START_AGAIN, WRAP, Explorer, button, close_whole
+from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Text, box
 
-#: The problems of the menu, and the button that leaves the observation to chance.
+#: The problems of the menu.
 PROBLEMS = ("corridor", "floors", "tiger", "ball_side", "three_places")
-WORLD = "let the world answer"
 
 Floats = NDArray[np.float64]
-
-# The corners of a tetrahedron, the simplex of four states, as seen from outside. The edge from the
-# first to the third corner is at the back.
-_TETRAHEDRON = np.array([[0.0, 0.12], [0.42, 0.95], [1.0, 0.4], [0.6, -0.05]])
-_HIDDEN = (0, 2)
-
-
-def follow(pomdp: POMDP, presses: Iterable[str], seed: int) -> Trajectory:
-    """Return the beliefs that the pressed buttons lead to.
-
-    Examples
-    --------
-    >>> follow(problem("floors"), ["down", WORLD], 0).steps
-    [(0, 0)]
-    """
-    return trajectory(pomdp, [None if name == WORLD else name for name in presses], seed)
-
-
-def chances(pomdp: POMDP, track: Trajectory) -> dict[str, float]:
-    """Return the probability of each observation after the action that waits for one.
-
-    Examples
-    --------
-    >>> corridor = problem("corridor")
-    >>> chances(corridor, follow(corridor, ["right", "goal", "left"], 0))
-    {'nothing': 1.0, 'goal': 0.0}
-    """
-    assert track.pending is not None
-    p = successors(pomdp, track.beliefs[-2], track.pending).chances
-    return dict(zip(pomdp.observations, p.tolist(), strict=True))
 
 
 class Turns(ipywidgets.VBox):
@@ -89,27 +61,22 @@ class Turns(ipywidgets.VBox):
     def __init__(self, problems: Mapping[str, POMDP], seed: int = 0) -> None:
         self.problems, self.seed = problems, seed
         self._shown = ""  # the problem whose buttons are shown
-        self.menu = ipywidgets.Dropdown(options=list(problems), description="problem")
-        self.menu.style.description_width = "5em"
-        again = _button("start again", lambda: self._set(self.value[:1]))
-        self.actions, self.observations = ipywidgets.HBox(), ipywidgets.HBox()
-        rows = [ipywidgets.HBox([self.menu, again]), self.actions, self.observations]
-        for row in rows:
-            row.layout.flex_flow = "row wrap"
-        super().__init__(rows)
-        self._set((self.menu.value,))
+        label = {"description_width": "5em"}
+        self.menu = ipywidgets.Dropdown(options=list(problems), description="problem", style=label)
+        again = button(START_AGAIN, lambda: self.set_trait("value", self.value[:1]))
+        self.actions, self.observations = (ipywidgets.HBox(layout=WRAP) for _ in range(2))
+        first = ipywidgets.HBox([self.menu, again], layout=WRAP)
+        super().__init__([first, self.actions, self.observations])
+        self.value = (self.menu.value,)
         self.menu.observe(self._chosen, names="value")
 
     def press(self, name: str) -> None:
         """Press the button of that name."""
-        self._set((*self.value, name))
+        self.value = (*self.value, name)
 
     def _chosen(self, change: Any) -> None:
         if change["new"] != self.value[0]:
-            self._set((change["new"],))
-
-    def _set(self, value: tuple[str, ...]) -> None:
-        self.value = value
+            self.value = (change["new"],)
 
     @traitlets.validate("value")
     def _possible(self, proposal: Any) -> tuple[str, ...]:
@@ -125,26 +92,23 @@ class Turns(ipywidgets.VBox):
         pomdp = self.problems[name]
         if name != self._shown:
             self._shown = self.menu.value = name
-            self.actions.children = self._row("do", pomdp.actions)
-            self.observations.children = self._row("see", (*pomdp.observations, WORLD))
+            self._fill(self.actions, "do", pomdp.actions)
+            self._fill(self.observations, "see", (*pomdp.observations, WORLD))
         track = follow(pomdp, presses, self.seed)
-        offered = {WORLD, *pomdp.actions}
-        if track.pending is not None:
-            offered = {WORLD, *(z for z, p in chances(pomdp, track).items() if p)}
-        for row in (self.actions, self.observations):
-            waits = (row is self.observations) == (track.pending is not None)
-            for button in row.children[1:]:
-                button.disabled = not waits or button.description not in offered
+        waits = track.pending is not None
+        offers = {
+            self.actions: () if waits else pomdp.actions,
+            self.observations: (*possible(pomdp, track), WORLD) if waits else (),
+        }
+        for row, offered in offers.items():
+            for each in row.children[1:]:
+                each.disabled = each.description not in offered
 
-    def _row(self, label: str, names: Iterable[str]) -> list[ipywidgets.Widget]:
+    def _fill(self, row: ipywidgets.HBox, label: str, names: Iterable[str]) -> None:
+        for old in row.children:
+            close_whole(old)
         word = ipywidgets.Label(label, layout={"width": "5em", "justify_content": "flex-end"})
-        return [word, *(_button(name, partial(self.press, name)) for name in names)]
-
-
-def _button(name: str, act: Callable[[], None]) -> ipywidgets.Button:
-    button = ipywidgets.Button(description=name, layout={"width": "auto"})
-    button.on_click(lambda _: act())
-    return button
+        row.children = [word, *(button(name, partial(self.press, name)) for name in names)]
 
 
 def belief_explorer(seed: int = 0) -> Explorer:
@@ -200,13 +164,13 @@ def draw(problems: Mapping[str, POMDP], seed: int, turns: tuple[str, ...]) -> Sc
     name, *presses = turns
     pomdp = problems[name]
     track = follow(pomdp, presses, seed)
-    panels = [_trail(pomdp, track), _bars(pomdp, track), _chances(pomdp, track)]
+    panels = [_trail(pomdp, track), _known(pomdp, track), _chances(pomdp, track)]
     return Scene(f"{name}, {_fact(pomdp, track)}", panels)
 
 
 def _fact(pomdp: POMDP, track: Trajectory) -> str:
     if track.pending is not None:
-        seen = [f"{z} {probability(p)}" for z, p in chances(pomdp, track).items() if p]
+        seen = [f"{z} {probability(p)}" for z, p in possible(pomdp, track).items()]
         return f"step {len(track.steps) + 1}, {pomdp.actions[track.pending]}: {_or(seen)}?"
     b = track.beliefs[-1]
     likeliest = [s for s, p in zip(pomdp.states, b, strict=True) if np.isclose(p, b.max())]
@@ -226,12 +190,12 @@ def _trail(pomdp: POMDP, track: Trajectory) -> Panel:
     """Draw where the belief has been: a dot after each step, a bend for each prediction."""
     if pomdp.n_states == 2:
         return _line(pomdp, track)
-    corners = to_triangle(np.eye(3)) if pomdp.n_states == 3 else _TETRAHEDRON
+    corners = CORNERS if pomdp.n_states == 3 else TETRAHEDRON
     layers: list[Layer] = []
-    for i, j in zip(*np.triu_indices(len(corners), 1), strict=True):
-        hidden = len(corners) == 4 and (i, j) == _HIDDEN
+    for i, j in combinations(range(len(corners)), 2):
         x, y = corners[[i, j]].T
-        layers.append(Line(x, y, style.QUIET, 1.0, dashed=hidden))
+        # The edge from the first to the third corner of a tetrahedron is at the back.
+        layers.append(Line(x, y, style.QUIET, 1.0, dashed=len(corners) == 4 and (i, j) == (0, 2)))
     places = np.array(track.beliefs) @ corners
     layers += _path(places[:, 0], places[:, 1])
     for (x, y), state in zip(corners, pomdp.states, strict=True):
@@ -263,23 +227,24 @@ def _path(x: Floats, y: Floats) -> list[Layer]:
     ]
 
 
-def _bars(pomdp: POMDP, track: Trajectory) -> Panel:
+def _known(pomdp: POMDP, track: Trajectory) -> Panel:
     """Draw the belief as bars, and the belief half a step earlier as outlines."""
-    S = pomdp.n_states
+    S, now = pomdp.n_states, track.beliefs[-1]
     rows = np.arange(S)[::-1]
-    layers: list[Layer] = [_blocks(track.beliefs[-1], rows, style.OURS)]
-    caption, before = "the belief at first", np.zeros(S)
+    caption, before, outlines = "the belief at first", np.zeros(S), []
     if len(track.beliefs) > 1:
         before = track.beliefs[-2]
-        now, then = ("corrected", "predicted") if track.pending is None else ("predicted", "before")
-        caption = f"filled: {now}; outlined: {then}"
-        for p, y in zip(before, rows, strict=True):
-            x, edge = _block(p, y).T
-            layers.append(Line(x, edge, style.INK, 1.0))
-    for state, p, old, y in zip(pomdp.states, track.beliefs[-1], before, rows, strict=True):
-        layers.append(Text(-0.72, y, state))
-        layers.append(Text(max(p, old) + 0.03, y, probability(p), style.OURS))
-    layers.append(Text(-0.72, S - 0.3, caption, style.QUIET))
+        names = ("before", "predicted", "corrected")
+        old, new = names[1:] if track.pending is None else names[:2]
+        caption = f"filled: {new}; outlined: {old}"
+        outlines = [
+            Line.around(_bar(p, y), style.INK, 1.0) for p, y in zip(before, rows, strict=True)
+        ]
+    layers = [
+        *_bars(pomdp.states, now, rows, style.OURS, -0.72, np.maximum(now, before), style.OURS),
+        *outlines,
+        Text(-0.72, S - 0.3, caption, style.QUIET),
+    ]
     return Panel(
         "probability of the state", "", (-0.75, 1.3), (min(S, 4) - 4.6, S), layers,
         xticks=[0, 0.5, 1], yticks=[], width=1.1,
@@ -290,18 +255,13 @@ def _chances(pomdp: POMDP, track: Trajectory) -> Panel:
     """Draw the probability of each observation, after each action that can be chosen now."""
     layers: list[Layer] = []
     y = 0.0
-    waiting = track.pending is not None
-    belief = track.beliefs[-2 if waiting else -1]
-    for a, action in enumerate(pomdp.actions):
-        if waiting and a != track.pending:
-            continue
-        chances = successors(pomdp, belief, a).chances
-        layers.append(Text(-0.92, y, f"after {action}", style.QUIET))
+    pending = track.pending
+    belief = track.beliefs[-1 if pending is None else -2]
+    for a in range(pomdp.n_actions) if pending is None else [pending]:
+        action, chances = pomdp.actions[a], successors(pomdp, belief, a).chances
         rows = y - 1 - np.arange(pomdp.n_observations)
-        layers.append(_blocks(chances, rows, style.POMDP_ACTIONS[action]))
-        for name, p, row in zip(pomdp.observations, chances, rows, strict=True):
-            layers.append(Text(-0.86, row, name))
-            layers.append(Text(p + 0.03, row, probability(p)))
+        layers.append(Text(-0.92, y, f"after {action}", style.QUIET))
+        layers += _bars(pomdp.observations, chances, rows, style.POMDP_ACTIONS[action], -0.86)
         y = rows[-1] - 1.3
     return Panel(
         "chance of the observation", "", (-0.95, 1.3), (min(y, -6.0), 0.8), layers,
@@ -309,11 +269,17 @@ def _chances(pomdp: POMDP, track: Trajectory) -> Panel:
     )  # fmt: skip
 
 
-def _block(p: float, y: float) -> Floats:
-    return np.array([[0, y - 0.3], [p, y - 0.3], [p, y + 0.3], [0, y + 0.3], [0, y - 0.3]])
-
-
-def _blocks(lengths: Floats, rows: NDArray[Any], color: str) -> Cells:
-    blocks = [_block(p, y) for p, y in zip(lengths, rows, strict=True)]
+def _bars(
+    names: Sequence[str], p: Floats, rows: NDArray[Any], color: str, left: float,
+    ends: Floats | None = None, ink: str = style.INK,
+) -> list[Layer]:  # fmt: skip
+    """Return a bar for each probability, with its name on the left and itself on the right."""
     within = (0.0, 1.0, float(rows.min()) - 0.5, float(rows.max()) + 0.5)
-    return Cells(blocks, [0] * len(blocks), within, [color], border=0)
+    layers: list[Layer] = [Cells.shape(list(map(_bar, p, rows)), color, within)]
+    for name, value, end, y in zip(names, p, p if ends is None else ends, rows, strict=True):
+        layers += [Text(left, y, name), Text(end + 0.03, y, probability(value), ink)]
+    return layers
+
+
+def _bar(p: float, y: float) -> Floats:
+    return box(0, p, y - 0.3, y + 0.3)

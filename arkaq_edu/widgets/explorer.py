@@ -4,27 +4,100 @@ from __future__ import annotations
 
 import html
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
+from weakref import WeakSet
 
 import anywidget
 import ipywidgets
 import numpy as np
 import traitlets
+from IPython import get_ipython
 from numpy.typing import NDArray
 
 from arkaq_edu.widgets.scene import PNG_WIDTH, Scene
 
+#: The layout of a row of widgets that goes on below where the page is narrow.
+WRAP = {"flex_flow": "row wrap"}
+#: The name of the button that forgets all presses.
+START_AGAIN = "start again"
+#: The explorers that the last run of each notebook cell made: the run, and what it made.
+_MADE: dict[str, tuple[str, WeakSet[Explorer]]] = {}
 
-def wide(label: str = "9em") -> dict[str, Any]:
-    """Return the layout of sliders below each other; `label` is the width of their descriptions.
+
+def sized(label: str = "9em", width: int = 36) -> dict[str, Any]:
+    """Return the layout of a slider with a description of width `label`, at most `width` em wide.
 
     Examples
     --------
-    >>> ipywidgets.IntSlider(description="sweeps", **wide("7em")).style.description_width
+    >>> ipywidgets.IntSlider(description="sweeps", **sized("7em")).style.description_width
     '7em'
     """
-    return {"layout": {"width": "min(100%, 36em)"}, "style": {"description_width": label}}
+    return {"layout": {"width": f"min(100%, {width}em)"}, "style": {"description_width": label}}
+
+
+def slider(
+    description: str, value: float, low: float, high: float, step: float = 1, **options: Any
+) -> ipywidgets.DOMWidget:
+    """Return a slider: of integers if its step is one, otherwise of floats.
+
+    Examples
+    --------
+    >>> slider("sweeps", 3, 0, 40).max, slider("slip", 0.1, 0, 0.5, 0.05).max
+    (40, 0.5)
+    """
+    kind = ipywidgets.IntSlider if isinstance(step, int) else ipywidgets.FloatSlider
+    return kind(value, min=low, max=high, step=step, description=description, **sized() | options)
+
+
+def stops(
+    description: str, values: Sequence[Any], value: Any, text: str = "{:g}", **options: Any
+) -> ipywidgets.SelectionSlider:
+    """Return a slider that stops at the given values only, each shown in the format `text`.
+
+    Examples
+    --------
+    >>> stops("steps", (0, 1000), 1000, "{:,}").label
+    '1,000'
+    """
+    named = [(text.format(stop), stop) for stop in values]
+    return ipywidgets.SelectionSlider(
+        options=named, value=value, description=description, **sized() | options
+    )
+
+
+def button(name: str, act: Callable[[], None]) -> ipywidgets.Button:
+    """Return a button, as wide as its name, that calls `act` when it is clicked.
+
+    Examples
+    --------
+    >>> button("hello", lambda: print("hello yourself")).click()
+    hello yourself
+    """
+    made = ipywidgets.Button(description=name, layout={"width": "auto"})
+    made.on_click(lambda _: act())
+    return made
+
+
+def close_whole(widget: ipywidgets.Widget) -> None:
+    """Close a widget and every widget that it is made of: its children, layout and style.
+
+    ipywidgets keeps a widget in memory, and in the saved notebook, until it is closed.
+
+    Examples
+    --------
+    >>> row = ipywidgets.HBox([ipywidgets.Button()])
+    >>> close_whole(row)
+    >>> row.children[0].layout.comm is None
+    True
+    """
+    for name in widget.keys:
+        value = getattr(widget, name)
+        for part in value if isinstance(value, tuple) else (value,):
+            if isinstance(part, ipywidgets.Widget):
+                close_whole(part)
+    ipywidgets.Widget.close(widget)
 
 
 class CanvasView(anywidget.AnyWidget):
@@ -53,8 +126,9 @@ class CanvasView(anywidget.AnyWidget):
     ('one dot', 8)
     """
 
-    _esm = Path(__file__).with_name("canvas.js")
-    _css = Path(__file__).with_name("canvas.css")
+    # As text: anywidget watches a file for changes, and so keeps every canvas in memory.
+    _esm = Path(__file__).with_name("canvas.js").read_text(encoding="utf-8")
+    _css = Path(__file__).with_name("canvas.css").read_text(encoding="utf-8")
     scene = traitlets.Dict().tag(sync=True)
     numbers = traitlets.Bytes().tag(sync=True)
     draggable: traitlets.List[int] = traitlets.List().tag(sync=True)
@@ -74,9 +148,7 @@ class Buttons(ipywidgets.HBox):
     Parameters
     ----------
     names : sequence of str
-        One button each.
-    start_again : str
-        The name of a last button, which forgets all presses.
+        One button each. A last button, "start again", forgets all presses.
     value : sequence of str
         The presses at the beginning.
 
@@ -104,20 +176,15 @@ class Buttons(ipywidgets.HBox):
 
     value = traitlets.Tuple()
 
-    def __init__(
-        self, names: Sequence[str], *, start_again: str = "start again", value: Sequence[str] = ()
-    ) -> None:
-        self.names, self.start_again = tuple(names), start_again
-        buttons = [ipywidgets.Button(description=name) for name in (*names, start_again)]
-        for button in buttons:
-            button.layout.width = "auto"
-            button.on_click(lambda pressed: self.press(pressed.description))
-        super().__init__(buttons, layout={"flex_flow": "row wrap"})
+    def __init__(self, names: Sequence[str], value: Sequence[str] = ()) -> None:
+        self.names = tuple(names)
+        buttons = [button(name, partial(self.press, name)) for name in (*names, START_AGAIN)]
+        super().__init__(buttons, layout=WRAP)
         self.value = tuple(value)
 
     def press(self, name: str) -> None:
         """Do what a click on the button of that name does."""
-        self.value = () if name == self.start_again else (*self.value, self.record(name))
+        self.value = () if name == START_AGAIN else (*self.value, self.record(name))
 
     def record(self, name: str) -> Any:
         """Return what to remember of a press: its name, or a tuple that begins with it."""
@@ -133,14 +200,12 @@ class Buttons(ipywidgets.HBox):
 
 
 class Drag(ipywidgets.VBox):
-    """One or two sliders that also follow a drag on the canvas, and its arrow keys.
+    """One or two sliders that also follow a drag on the first panel, and the arrow keys.
 
     Parameters
     ----------
-    x, y : ipywidgets.FloatSlider or IntSlider, optional
-        The sliders that the pointer moves across and upward; one of them may be missing.
-    panel : int
-        The panel on which a drag may begin.
+    *sliders : ipywidgets.FloatSlider or IntSlider
+        The slider that the pointer moves across, and perhaps one that it moves upward.
     gain : tuple of two float, optional
         How far the sliders move for each unit of the panel's axes. If it is None, they move to
         where the pointer is.
@@ -152,7 +217,7 @@ class Drag(ipywidgets.VBox):
 
     Examples
     --------
-    >>> belief = Drag(ipywidgets.FloatSlider(0.5, min=0, max=1, step=0.05))
+    >>> belief = Drag(slider("belief", 0.5, 0, 1, 0.05))
     >>> view = CanvasView()
     >>> belief.follow(view)
     >>> view.drag = {"number": 1, "panel": 0, "from": (0.5, 2), "to": (0.31, 7)}
@@ -166,74 +231,63 @@ class Drag(ipywidgets.VBox):
     value = traitlets.Any()
 
     def __init__(
-        self,
-        x: ipywidgets.DOMWidget | None = None,
-        y: ipywidgets.DOMWidget | None = None,
-        *,
-        panel: int = 0,
-        gain: tuple[float, float] | None = None,
+        self, *sliders: ipywidgets.DOMWidget, gain: tuple[float, float] | None = None
     ) -> None:
-        self.panel, self.gain = panel, None if gain is None else np.array(gain)
-        self._pair = (x, y)
+        super().__init__(sliders)
+        self.gain = None if gain is None else np.array(gain)
         self._number, self._start = 0, self._place()
-        super().__init__([slider for slider in self._pair if slider])
         self._gather()
-        for slider in self.children:
-            slider.observe(self._gather, names="value")
+        for each in sliders:
+            each.observe(self._gather, names="value")
         self.observe(self._spread, names="value")
 
     def follow(self, view: CanvasView) -> None:
         """Let drags and arrow keys on a canvas move the sliders."""
-        view.draggable = [*view.draggable, self.panel]
+        view.draggable = [0]
         view.observe(self._dragged, names="drag")
         view.observe(self._stepped, names="arrows")
 
     def _dragged(self, change: Any) -> None:
         drag = change["new"]
-        if drag.get("panel") != self.panel:
-            return
         if drag["number"] != self._number:
             self._number, self._start = drag["number"], self._place()
-        begin, now = np.array([drag["from"], drag["to"]])
+        begin, now = np.array([drag["from"], drag["to"]])[:, : len(self.children)]
         self._go(now if self.gain is None else self._start + self.gain * (now - begin))
 
     def _stepped(self, change: Any) -> None:
-        view = change["owner"]
-        if view.drag.get("panel", view.draggable[0]) != self.panel:
-            return
         keys = np.subtract(change["new"], change["old"])
         if len(self.children) == 1:  # a single slider takes all four keys, as sliders do
-            keys[:] = keys.sum()
-        steps = np.array([slider.step if slider else 0.0 for slider in self._pair])
+            keys = keys.sum(keepdims=True)
+        steps = np.array([each.step for each in self.children])
         self._go(self._place() + steps * keys * (1 if self.gain is None else np.sign(self.gain)))
 
     def _place(self) -> NDArray[np.float64]:
-        return np.array([slider.value if slider else 0.0 for slider in self._pair])
+        return np.array([each.value for each in self.children], dtype=float)
 
     def _go(self, place: NDArray[np.float64]) -> None:
         """Move each slider to the stop nearest to its place, and report both at once."""
         with self.hold_trait_notifications():
-            for slider, target in zip(self._pair, place.tolist(), strict=True):
-                if slider:
-                    stop = slider.min + round((target - slider.min) / slider.step) * slider.step
-                    stop = min(max(round(stop, 10), slider.min), slider.max)
-                    slider.value = type(slider.value)(stop)
+            for each, target in zip(self.children, place.tolist(), strict=True):
+                stop = each.min + round((target - each.min) / each.step) * each.step
+                stop = min(max(round(stop, 10), each.min), each.max)
+                each.value = type(each.value)(stop)
 
     def _gather(self, _: Any = None) -> None:
-        values = tuple(slider.value for slider in self.children)
+        values = tuple(each.value for each in self.children)
         self.value = values if len(values) > 1 else values[0]
 
     def _spread(self, change: Any) -> None:
         values = change["new"] if len(self.children) > 1 else [change["new"]]
         with self.hold_trait_notifications():
-            for slider, value in zip(self.children, values, strict=True):
-                slider.value = value
+            for each, value in zip(self.children, values, strict=True):
+                each.value = value
 
 
 class Explorer(ipywidgets.VBox):
     """Controls above a canvas that is drawn again whenever one of them moves.
 
     In a stored notebook without a kernel it is a picture and the fact that the picture states.
+    When a notebook cell runs again, the explorers that it made before are closed.
 
     Parameters
     ----------
@@ -277,6 +331,11 @@ class Explorer(ipywidgets.VBox):
             control.observe(self._moved, names="value")
             if isinstance(control, Drag):
                 control.follow(self.view)
+        _close_predecessors(self)
+
+    def close(self) -> None:
+        """Close the explorer with its controls and its canvas; nothing of it stays in memory."""
+        close_whole(self)
 
     def _redraw(self) -> None:
         self.drawn = self._draw(**{name: box.value for name, box in self.controls.items()})
@@ -298,3 +357,19 @@ class Explorer(ipywidgets.VBox):
         bundle = super()._repr_mimebundle_(**kwargs)
         bundle |= {"text/plain": self.drawn.fact, "image/png": self.drawn.png()}
         return bundle, {"image/png": {"width": PNG_WIDTH}}
+
+
+def _close_predecessors(explorer: Explorer) -> None:
+    """Close the explorers that an earlier run of the same notebook cell made."""
+    request: dict[str, Any] = getattr(get_ipython(), "get_parent", dict)()
+    cell = request.get("metadata", {}).get("cellId")
+    if cell is None:  # not in a notebook, or not in a cell of one
+        return
+    run = request["header"]["msg_id"]
+    before, made = _MADE.get(cell, (run, WeakSet()))
+    if before != run:
+        for old in list(made):
+            old.close()
+        made = WeakSet()
+    made.add(explorer)
+    _MADE[cell] = run, made

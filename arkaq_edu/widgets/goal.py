@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from itertools import pairwise
 
-import ipywidgets
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -16,8 +14,10 @@ from arkaq_edu.experiments import goal
 from arkaq_edu.experiments.goal import aiming, kicks, planning
 from arkaq_edu.field import pitch
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.widgets.explorer import Explorer, wide
+from arkaq_edu.widgets.explorer import Explorer, sized, slider, stops
 from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Text
+
+Floats = NDArray[np.float64]
 
 #: Where the slider of vigilance stops: from many states to a single one.
 VIGILANCES = (
@@ -67,22 +67,14 @@ def scoring_explorer(patterns: ArrayLike | None = None) -> Explorer:
     """
     patterns = goal.patterns(goal.load_sightings()) if patterns is None else patterns
     stream = _checks.array("patterns", patterns, (None, 1))
-    look = wide("8em")
+    wide = sized("8em")
+    near = int(STARTS["near"].distance)
     return Explorer(
         partial(draw, stream),
-        distance=ipywidgets.IntSlider(
-            int(STARTS["near"].distance), min=1000, max=3000, step=50,
-            description="distance (mm)", **look,
-        ),
-        spread=ipywidgets.FloatSlider(
-            1.0, min=0.0, max=2.0, step=0.1, readout_format=".1f",
-            description="kick's spread", **look,
-        ),
-        vigilance=ipywidgets.SelectionSlider(
-            options=[(f"{stop:g}", stop) for stop in VIGILANCES], value=0.06,
-            description="vigilance", **look,
-        ),
-    )  # fmt: skip
+        distance=slider("distance (mm)", near, 1000, 3000, 50, **wide),
+        spread=slider("kick's spread", 1.0, 0.0, 2.0, 0.1, readout_format=".1f", **wide),
+        vigilance=stops("vigilance", VIGILANCES, 0.06, **wide),
+    )
 
 
 def draw(
@@ -106,32 +98,27 @@ def draw(
     Scene
     """
     centers = goal.find_centers(vigilance, patterns)
-    paths = kicks.spread_out(kicks.ball_paths(), spread)
-    chance = aiming.chance_on_grid(paths, distance)
+    kicked = kicks.spread_out(kicks.ball_paths(), spread)
+    chance = aiming.chance_on_grid(kicked, distance)
     actions = aiming.plan(chance, centers)
     goals = aiming.probabilities(chance, centers, actions)
-    mean = {
-        who: f"{100 * planning.mean_over_starts(values, STARTS['near']):.0f} %"
-        for who, values in goals.items()
-    }
-    states = f"{len(centers)} state{'s' if len(centers) > 1 else ''} at vigilance {vigilance:g}"
-    fact = (
-        f"{distance:,.0f} mm, spread {spread:.2g}, {states}: {mean['learned']} score; "
-        f"the best {mean['best']}, random {mean['random']}"
-    )
-    field = _field(paths, distance, aiming.last_aims(centers, actions, _SHOWN))
+    states = f"{len(centers)} state{'s' * (len(centers) != 1)} at vigilance {vigilance:g}"
+    scores = aiming.score_fact(goals)
+    fact = f"{distance:,.0f} mm, spread {spread:.2g}, {states}: {scores}"
+    field = _field(kicked, distance, aiming.last_aims(centers, actions, _SHOWN))
     return Scene(fact, [field, _shares(goals | {"at once": chance}, centers, actions)])
 
 
-def _field(paths: NDArray[np.float64], distance: float, aims: NDArray[np.float64]) -> Panel:
+def _field(kicked: Floats, distance: float, aims: Floats) -> Panel:
     """Draw the kicks of the policy from above, with the goal at the top."""
-    placed = kicks.on_the_field(paths[: len(aims)], distance, aims)
+    placed = kicks.on_the_field(kicked[: len(aims)], distance, aims)
     scored = kicks.is_goal(placed)
     post, back = pitch.GOAL_WIDTH / 2, _GOAL_DEPTH
+    inside = np.clip(placed[scored], (-np.inf, -post), (back, post))
     layers: list[Layer] = [
         Line(_ACROSS, (0.0, 0.0), style.QUIET, 1.0, dashed=True),
-        _fan(placed[~scored], style.QUIET, 0.5),
-        _fan(np.clip(placed[scored], (-np.inf, -post), (back, post)), style.OURS, 0.9),
+        Line.through(placed[~scored, :, ::-1], style.QUIET, 0.5),
+        Line.through(inside[..., ::-1], style.OURS, 0.9),
         Line([post, post, -post, -post], [0.0, back, back, 0.0], style.INK, 3.0),
         Points([0.0], [-distance], 6.0),
         Text(-110.0, -distance - 25.0, f"{len(aims)} kicks, {scored.sum()} goals"),
@@ -139,28 +126,13 @@ def _field(paths: NDArray[np.float64], distance: float, aims: NDArray[np.float64
     return Panel("", "", _ACROSS, _DEPTH, layers, width=0.62, bare=True)
 
 
-def _fan(placed: NDArray[np.float64], color: str, width: float) -> Line:
-    # A NaN after each path lifts the pen.
-    lifted = np.pad(placed, ((0, 0), (0, 1), (0, 0)), constant_values=np.nan).reshape(-1, 2)
-    return Line(lifted[:, 1], lifted[:, 0], color, width)
-
-
-def _shares(
-    goals: dict[str, NDArray[np.float64]],
-    centers: NDArray[np.float64],
-    actions: NDArray[np.intp],
-) -> Panel:
+def _shares(goals: dict[str, Floats], centers: Floats, actions: NDArray[np.intp]) -> Panel:
     """Draw the share of goals by the orientation at the start, and the action of each state."""
     low, high = Sensing.goal().low[0], Sensing.goal().high[0]
-    ends = goal.cells(centers)[1][::-1]
-    strip = [
-        np.array([[left, _FOOT], [right, _FOOT], [right, _TOP], [left, _TOP]])
-        for left, right in pairwise(ends)
-    ]
-    layers: list[Layer] = [
-        Cells(strip, actions.tolist(), (low, high, _FOOT, _TOP), _COLORS, border=1.0)
-    ]
-    for polygon, action in zip(strip, actions, strict=True):
+    ends, window = goal.cells(centers)[1][::-1], (low, high, _FOOT, _TOP)
+    states = Cells.strip(ends, actions.tolist(), window, palette=_COLORS, border=1.0)
+    layers: list[Layer] = [states]
+    for polygon, action in zip(states.polygons, actions, strict=True):
         if np.ptp(polygon[:, 0]) > 0.03:  # enough room for the sign
             x, y = polygon.mean(axis=0)
             layers.append(Text(x, y, _SIGNS[action], _SIGN_COLORS[action], "center"))

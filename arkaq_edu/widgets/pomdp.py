@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from itertools import pairwise
 
 import ipywidgets
 import numpy as np
@@ -14,7 +13,7 @@ from arkaq_edu.figures.drawing.style import POMDP_ACTIONS
 from arkaq_edu.pomdp import PolicyTree, bowl, problem, solved, upper_surface
 from arkaq_edu.pomdp.backup import candidates, n_candidates
 from arkaq_edu.pomdp.surface import CENTERED
-from arkaq_edu.widgets.explorer import Drag, Explorer, wide
+from arkaq_edu.widgets.explorer import Drag, Explorer, slider
 from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Text
 
 Floats = NDArray[np.float64]
@@ -25,6 +24,7 @@ HORIZONS = range(1, 6)
 _FADED = 128  # more lines could not be distinguished
 _THIN = 0.01  # a face with a smaller area consists of its border only
 _FAINT = "#dcdcdc"
+_WINDOW = (-1.3, 1.3, -1.4, 1.4)  # of the bowl
 
 
 def value_explorer() -> Explorer:
@@ -51,13 +51,16 @@ def value_explorer() -> Explorer:
     >>> explorer
     1 step to go, p(s1) = 0.25: worth 1.125, begin with a2; 2 of 2 plans are needed
     """
-    horizon = ipywidgets.IntSlider(
-        3, min=HORIZONS[0], max=HORIZONS[-1], description="steps to go", **wide()
-    )
-    belief = ipywidgets.FloatSlider(
-        0.25, min=0, max=1, step=0.01, description="belief p(s1)", **wide()
-    )
-    return Explorer(draw_value, horizon=horizon, belief=Drag(belief))
+    belief = slider("belief p(s1)", 0.25, 0, 1, 0.01)
+    return Explorer(draw_value, horizon=_horizon(3), belief=Drag(belief))
+
+
+def _horizon(value: int) -> ipywidgets.DOMWidget:
+    return slider("steps to go", value, HORIZONS[0], HORIZONS[-1])
+
+
+def _steps(n: int) -> str:
+    return f"{n} step{'s' * (n != 1)}"
 
 
 def draw_value(horizon: int, belief: float) -> Scene:
@@ -79,7 +82,7 @@ def draw_value(horizon: int, belief: float) -> Scene:
     b = np.array([belief, 1 - belief])
     value, tree = V.value(b), V.tree(V.best(b))
     fact = (
-        f"{horizon} step{'' if horizon == 1 else 's'} to go, p(s1) = {belief:.2f}: "
+        f"{_steps(horizon)} to go, p(s1) = {belief:.2f}: "
         f"worth {value:.3f}, begin with {pomdp.actions[tree.action]}; "
         f"{len(V)} of {n_candidates(pomdp, V):,} plans are needed"
     )
@@ -93,36 +96,24 @@ def _still(horizon: int) -> tuple[list[Layer], tuple[float, float]]:
     layers: list[Layer] = [_lines(candidates(pomdp, V, _FADED), _FAINT, 0.8)]
     colors = [POMDP_ACTIONS[name] for name in pomdp.actions]
     plans, p, value = upper_surface(V.alphas)
+    best = V.actions[plans]
     for a, color in enumerate(colors):
         layers.append(_lines(V.alphas[V.actions == a], style.paler(color, 0.4), 1.0))
-    for a, color in enumerate(colors):
-        own = np.flatnonzero(V.actions[plans] == a)
-        layers.append(_pieces(p[own], p[own + 1], value[own], value[own + 1], color, 4.0))
+    corners = np.column_stack([p, value])
+    pieces = np.stack([corners[:-1], corners[1:]], axis=1)
+    layers += [Line.through(pieces[best == a], color, 4.0) for a, color in enumerate(colors)]
     low, high = -0.12 * value.max(), 1.12 * value.max()
-    foot = 0.55 * low
-    strips = [
-        np.array([[left, low], [right, low], [right, foot], [left, foot]])
-        for left, right in pairwise(p)
-    ]
-    layers.append(Cells(strips, V.actions[plans].tolist(), (0, 1, low, high), colors, border=0))
-    for a, (color, x) in enumerate(zip(colors, (0.72, 0.86), strict=True)):
+    window = (0, 1, low, 0.55 * low)
+    layers.append(Cells.strip(p, best.tolist(), window, palette=colors, border=0))
+    for name, color, x in zip(pomdp.actions, colors, (0.72, 0.86), strict=True):
         layers.append(Line([x, x + 0.03], [0.95 * high] * 2, color, 4.0))
-        layers.append(Text(x + 0.045, 0.95 * high, pomdp.actions[a], color))
+        layers.append(Text(x + 0.045, 0.95 * high, name, color))
     return layers, (low, high)
 
 
 def _lines(alphas: Values, color: str, width: float) -> Line:
-    ends = np.ones(len(alphas))
-    return _pieces(0 * ends, ends, alphas[:, 1], alphas[:, 0], color, width)
-
-
-def _pieces(
-    left: Values, right: Values, low: Values, high: Values, color: str, width: float
-) -> Line:
-    """Return many separate pieces as one line: where x and y are NaN it is interrupted."""
-    gap = np.full(len(left), np.nan)
-    x, y = np.column_stack([left, right, gap]), np.column_stack([low, high, gap])
-    return Line(x.ravel(), y.ravel(), color, width)
+    ends = np.broadcast_to([0.0, 1.0], alphas.shape)
+    return Line.through(np.stack([ends, alphas[:, ::-1]], axis=-1), color, width)
 
 
 def _surface(horizon: int, p: float, value: float) -> Panel:
@@ -137,35 +128,32 @@ def _surface(horizon: int, p: float, value: float) -> Panel:
 
 def _plan(tree: PolicyTree) -> Panel:
     """Return a picture of the first three steps of a plan."""
-    pomdp = problem("two_state")
+    pomdp, nodes = problem("two_state"), tree.nodes(3)
     layers: list[Layer] = []
-    nodes: dict[int, list[tuple[float, float]]] = {a: [] for a in range(pomdp.n_actions)}
-
-    def grow(plan: PolicyTree, x: float, level: int) -> None:
-        y, reach = (3.4, 0.2, -3.0)[level], (3.1, 1.0)
-        nodes[plan.action].append((x, y))
-        if level == 2 or not plan.branches:
-            return
-        for z, (branch, side) in enumerate(zip(plan.branches, (-1, 0, 1), strict=True)):
-            below, foot = x + side * reach[level], (0.2, -3.0)[level]
+    for seen in nodes:
+        if seen:
+            (x, y), (below, foot) = _node(seen[:-1]), _node(seen)
             layers.append(Line([x, below], [y, foot], style.QUIET, 1.0))
-            if level == 0:
-                name = pomdp.observations[z]
-                layers.append(Text(0.55 * below + 0.15, 0.45 * y + 0.55 * foot, name, style.QUIET))
-            grow(branch, below, level + 1)
-
-    grow(tree, 0.0, 0)
-    for a, places in nodes.items():
+        if len(seen) == 1:
+            name = pomdp.observations[seen[0]]
+            layers.append(Text(0.55 * below + 0.15, 0.45 * y + 0.55 * foot, name, style.QUIET))
+    for a, name in enumerate(pomdp.actions):
+        places = [_node(seen) for seen, action in nodes.items() if action == a]
         if places:
             x, y = np.transpose(places)
-            layers.append(Points(x, y, 12.0, POMDP_ACTIONS[pomdp.actions[a]]))
-            layers += [Text(*place, pomdp.actions[a], "#ffffff", "center") for place in places]
+            layers.append(Points(x, y, 12.0, POMDP_ACTIONS[name]))
+            layers += [Text(*place, name, "#ffffff", "center") for place in places]
     if tree.depth > 3:
-        more = tree.depth - 3
-        text = f"and {more} step{'' if more == 1 else 's'} more"
+        text = f"and {_steps(tree.depth - 3)} more"
         layers.append(Text(0.0, -4.3, text, style.QUIET, "center"))
     layers.append(Text(0.0, 4.6, "the best plan here", style.QUIET, "center"))
     return Panel("", "", (-4.8, 4.8), (-4.8, 5.0), layers, bare=True)
+
+
+def _node(seen: tuple[int, ...]) -> tuple[float, float]:
+    """Return where the node that follows these observations, at most two, is drawn."""
+    sides = zip(seen, (3.1, 1.0), strict=False)
+    return sum((z - 1) * reach for z, reach in sides), (3.4, 0.2, -3.0)[len(seen)]
 
 
 def bowl_explorer() -> Explorer:
@@ -187,16 +175,10 @@ def bowl_explorer() -> Explorer:
     >>> explorer
     2 steps to go: 7 planes, worth 1.80 in the middle, 5.00 at the corners; seen from 46°, 38° up
     """
-    horizon = ipywidgets.IntSlider(
-        2, min=HORIZONS[0], max=HORIZONS[-1], description="steps to go", **wide()
-    )
-    azimuth = ipywidgets.FloatSlider(
-        46, min=-180, max=180, step=2, description="turn (degrees)", readout_format=".0f", **wide()
-    )
-    elevation = ipywidgets.FloatSlider(
-        38, min=0, max=90, step=2, description="eye (degrees up)", readout_format=".0f", **wide()
-    )
-    return Explorer(draw_bowl, horizon=horizon, view=Drag(azimuth, elevation, gain=(60, -60)))
+    azimuth = slider("turn (degrees)", 46, -180, 180, 2.0, readout_format=".0f")
+    elevation = slider("eye (degrees up)", 38, 0, 90, 2.0, readout_format=".0f")
+    view = Drag(azimuth, elevation, gain=(60, -60))
+    return Explorer(draw_bowl, horizon=_horizon(2), view=view)
 
 
 def draw_bowl(horizon: int, view: tuple[float, float]) -> Scene:
@@ -217,48 +199,43 @@ def draw_bowl(horizon: int, view: tuple[float, float]) -> Scene:
     azimuth, elevation = view
     known = V.alphas.max(axis=0).min()
     fact = (
-        f"{horizon} step{'' if horizon == 1 else 's'} to go: {len(V)} planes, worth "
+        f"{_steps(horizon)} to go: {len(V)} planes, worth "
         f"{V.value([1 / 3] * 3):.2f} in the middle, {known:.2f} at the corners; "
         f"seen from {azimuth:.0f}°, {elevation:.0f}° up"
     )
-    names = [pomdp.actions[a] for a in V.actions]
-    seen = bowl(V, azimuth, elevation)
-    colors = [POMDP_ACTIONS[names[k]] for k in seen.plans]
+    own = [POMDP_ACTIONS[pomdp.actions[a]] for a in V.actions]
+    seen, above = bowl(V, azimuth, elevation), bowl(V, 0, 90)
+    colors = [own[k] for k in seen.plans]
     bright = style.shaded(colors, seen.light)
-    window = (-1.3, 1.3, -1.4, 1.4)
     layers: list[Layer] = [
-        _cells(seen.shadows, [style.paler(color, 0.55) for color in colors], window),
+        _cells(seen.shadows, [style.paler(color, 0.55) for color in colors]),
         *(Line(post[:, 0], post[:, 1], style.QUIET, 1.0, dashed=True) for post in seen.corners),
         *_edges(seen.faces, bright),
-        _cells(seen.faces, bright, window),
+        _cells(seen.faces, bright),
     ]
     for (_, (x, y)), name in zip(seen.corners, pomdp.states, strict=True):
         layers.append(Text(x, y + 0.09, name, style.INK, "center"))
-    turned = Panel("", "", window[:2], window[2:], layers, width=1.2, bare=True)
-
-    above = bowl(V, 0, 90)
-    own = [POMDP_ACTIONS[names[k]] for k in above.plans]
-    flat: list[Layer] = [_cells(above.shadows, own, window)]
+    flat: list[Layer] = [_cells(above.shadows, [own[k] for k in above.plans])]
     for (x, y), name in zip(1.12 * CENTERED, pomdp.states, strict=True):
         flat.append(Text(x, y, name, style.INK, "center"))
     for i, name in enumerate(pomdp.actions):
         x, y = -0.95 + 1.1 * (i % 2), -0.9 - 0.17 * (i // 2)
         flat += [Points([x], [y], 6.0, POMDP_ACTIONS[name]), Text(x + 0.1, y, name)]
-    return Scene(fact, [turned, Panel("", "", window[:2], window[2:], flat, bare=True)])
+    ends = _WINDOW[:2], _WINDOW[2:]
+    turned = Panel("", "", *ends, layers, width=1.2, bare=True)
+    return Scene(fact, [turned, Panel("", "", *ends, flat, bare=True)])
 
 
 def _edges(polygons: list[Floats], colors: list[str]) -> list[Layer]:
     """Return the outlines of polygons seen edge-on, whose areas alone would be invisible."""
     edges: list[Layer] = []
     for polygon, color in zip(polygons, colors, strict=True):
-        x, y = np.vstack([polygon, polygon[:1]]).T
-        if abs(x[:-1] @ y[1:] - x[1:] @ y[:-1]) / 2 < _THIN:
-            edges.append(Line(x, y, color, 3.0))
+        (x, y), (x_next, y_next) = polygon.T, np.roll(polygon, -1, axis=0).T
+        if abs(x @ y_next - x_next @ y) / 2 < _THIN:
+            edges.append(Line.around(polygon, color, 3.0))
     return edges
 
 
-def _cells(
-    polygons: list[Floats], colors: list[str], window: tuple[float, float, float, float]
-) -> Cells:
+def _cells(polygons: list[Floats], colors: list[str]) -> Cells:
     """Return polygons, each in a color of its own, drawn in their order."""
-    return Cells(polygons, range(len(polygons)), window, colors, border=0.7)
+    return Cells(polygons, range(len(polygons)), _WINDOW, colors, border=0.7)

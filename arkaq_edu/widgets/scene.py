@@ -19,7 +19,8 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, ClassVar
 
 import numpy as np
@@ -33,7 +34,11 @@ from PIL import Image
 
 from arkaq_edu.figures.drawing import style
 
+#: Left, right, bottom and top of a part of a panel, in the units of its axes.
+Window = tuple[float, float, float, float]
+
 PNG_WIDTH = 760  # width of a stored picture on the page (pixels)
+SIGMA = style.paler(style.OURS, 0.75)  # as `style.band` looks on white
 _POINTS = 0.75  # in a pixel of the page
 
 
@@ -45,8 +50,7 @@ class _Marks:
 
     def look(self) -> dict[str, Any]:
         """Return everything but the points."""
-        names = (field.name for field in fields(self))  # type: ignore[arg-type]
-        return {name: getattr(self, name) for name in names if name not in ("x", "y")}
+        return {name: value for name, value in vars(self).items() if name not in ("x", "y")}
 
     def numbers(self) -> NDArray[np.float32]:
         """Return x and y in turn."""
@@ -90,6 +94,31 @@ class Line(_Marks):
     width: float = 1.5
     dashed: bool = False
 
+    @classmethod
+    def around(cls, polygon: NDArray[np.float64], color: str, width: float) -> Line:
+        """Return the outline of a polygon.
+
+        Examples
+        --------
+        >>> len(Line.around(box(0, 1, 0, 1), "black", 1.0).x)
+        5
+        """
+        x, y = np.vstack([polygon, polygon[:1]]).T
+        return cls(x, y, color, width)
+
+    @classmethod
+    def through(cls, paths: NDArray[np.floating], color: str, width: float) -> Line:
+        """Return many paths, shape (paths, points, 2), as one line, interrupted between them.
+
+        Examples
+        --------
+        >>> Line.through(np.zeros((2, 3, 2)), "black", 1.0).x
+        array([ 0.,  0.,  0., nan,  0.,  0.,  0., nan])
+        """
+        lifted = np.pad(paths, ((0, 0), (0, 1), (0, 0)), constant_values=np.nan)
+        x, y = lifted.reshape(-1, 2).T
+        return cls(x, y, color, width)
+
     def paint(self, ax: Axes) -> None:
         """Draw with matplotlib."""
         dash = "--" if self.dashed else "-"
@@ -123,9 +152,55 @@ class Cells:
     kind: ClassVar[str] = "cells"
     polygons: Sequence[NDArray[np.float64]]
     colors: Sequence[int]
-    within: tuple[float, float, float, float]
+    within: Window
     palette: Sequence[str] = style.CELLS
     border: float | None = None
+
+    @classmethod
+    def shape(cls, polygons: Sequence[NDArray[np.float64]], color: str, within: Window) -> Cells:
+        """Return polygons of one color, without borders.
+
+        Examples
+        --------
+        >>> Cells.shape([box(0, 1, 0, 1)], "red", (0, 9, 0, 9)).palette
+        ['red']
+        """
+        return cls(polygons, [0] * len(polygons), within, [color], border=0)
+
+    @classmethod
+    def band(
+        cls, x: ArrayLike, mean: NDArray[Any], std: NDArray[Any], within: Window, color: str = SIGMA
+    ) -> Cells:
+        """Return the band of one standard deviation to each side of a mean.
+
+        Examples
+        --------
+        >>> mean, std = np.array([2, 3]), np.array([1, 1])
+        >>> Cells.band([0, 1], mean, std, (0, 1, 0, 9)).polygons[0].tolist()
+        [[0, 3], [1, 4], [1, 2], [0, 1]]
+        """
+        return cls.shape([area(x, mean - std, mean + std)], color, within)
+
+    @classmethod
+    def strip(
+        cls, ends: NDArray[np.float64], colors: Sequence[int], within: Window, **look: Any
+    ) -> Cells:
+        """Return a strip at the foot of a panel: a rectangle from each of the ends to the next.
+
+        Parameters
+        ----------
+        ends : ndarray, shape (n + 1,)
+            Where the rectangles begin and end; their height is that of `within`.
+        colors, within, **look
+            As for `Cells`.
+
+        Examples
+        --------
+        >>> Cells.strip(np.array([0, 0.3, 1]), [0, 1], (0, 1, 0, 0.1)).polygons[1][0].tolist()
+        [0.3, 0.0]
+        """
+        boxes = [box(left, right, *within[2:]) for left, right in pairwise(ends)]
+        return cls(boxes, colors, within, **look)
 
     def look(self) -> dict[str, Any]:
         """Return everything but the polygons."""
@@ -157,7 +232,7 @@ class Picture:
 
     kind: ClassVar[str] = "picture"
     pixels: NDArray[np.uint8]
-    within: tuple[float, float, float, float]
+    within: Window
     smooth: bool = True
 
     def look(self) -> dict[str, Any]:
@@ -281,23 +356,27 @@ class Scene:
         return file.getvalue()
 
 
-def between(
-    x: ArrayLike,
-    low: ArrayLike,
-    high: ArrayLike,
-    within: tuple[float, float, float, float],
-    color: str,
-) -> Cells:
-    """Return the area between two curves, clipped to a window as in `Cells`.
+def box(left: float, right: float, bottom: float, top: float) -> NDArray[np.float64]:
+    """Return the corners of a rectangle.
 
     Examples
     --------
-    >>> between([0, 1], [0, 0], [1, 2], (0, 1, 0, 9), "#dddddd").polygons[0].tolist()
+    >>> box(0, 2, 0, 1).tolist()
+    [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]
+    """
+    return np.array([[left, bottom], [right, bottom], [right, top], [left, top]], dtype=float)
+
+
+def area(x: ArrayLike, low: ArrayLike, high: ArrayLike) -> NDArray[np.float64]:
+    """Return the outline of the area between two curves.
+
+    Examples
+    --------
+    >>> area([0, 1], [0, 0], [1, 2]).tolist()
     [[0, 1], [1, 2], [1, 0], [0, 0]]
     """
     x, low, high = (np.asarray(values) for values in (x, low, high))
-    outline = np.column_stack([np.append(x, x[::-1]), np.append(high, low[::-1])])
-    return Cells([outline], [0], within, [color], border=0)
+    return np.column_stack([np.append(x, x[::-1]), np.append(high, low[::-1])])
 
 
 def tick_label(value: float) -> str:

@@ -4,33 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from math import acos, degrees
 from typing import Any
 
 import ipywidgets
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu import _checks
-from arkaq_edu.art import ART2A, EuclideanART, coverage, quantization_error
 from arkaq_edu.experiments import segmentation
-from arkaq_edu.experiments.segmentation import (
-    DISTANCE,
-    LEARNING_RATE,
-    ORDERS,
-    ORIENTATION,
-    THESIS_COUNTS,
-    count_fact,
-    in_order,
-    in_view,
-    map_of,
-)
+from arkaq_edu.experiments.segmentation import LEARNING_RATE, METHODS, ORDERS, THESIS_COUNTS
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.widgets.explorer import Explorer
+from arkaq_edu.widgets.explorer import WRAP, Explorer, sized, slider
 from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Text
-
-#: The two methods of the thesis's section 4.2.
-METHODS = {"Euclidean": EuclideanART, "angular": ART2A}
 
 #: The stops of the sliders of vigilance: distances, including the thesis's five, and cosines.
 VIGILANCES = tuple(round(0.025 + 0.005 * step, 3) for step in range(36))
@@ -86,39 +71,35 @@ def vigilance_explorer(
     }
     explorer = Explorer(partial(draw, patterns, references), **controls)
     rows = [("method", "vigilance", "cosine"), ("order", "eta", "n")]
-    wrap = {"flex_flow": "row wrap"}
     explorer.children = [
-        *(ipywidgets.HBox([controls[name] for name in row], layout=wrap) for row in rows),
+        *(ipywidgets.HBox([controls[name] for name in row], layout=WRAP) for row in rows),
         *explorer.children[len(controls) :],
     ]
     return explorer
 
 
 def _controls(n: int, learning_rate: float) -> dict[str, Any]:
-    def made(kind: Any, description: str, em: int, **look: Any) -> Any:
-        return kind(description=description, layout={"width": f"min(100%, {em}em)"}, **look)
-
+    narrow, middle, wide = (sized("", width) for width in (17, 21, 38))
     few = max(1, n // 13)  # pieces of 500, if it is the recorded stream
-    menu, real, whole = ipywidgets.Dropdown, ipywidgets.FloatSlider, ipywidgets.IntSlider
-    distances = {"min": VIGILANCES[0], "max": VIGILANCES[-1], "step": 0.005}
-    cosines = {"min": COSINES[0], "max": COSINES[-1], "step": 0.01}
-    controls = {
-        "method": made(menu, "method", 17, options=list(METHODS)),
-        "vigilance": made(real, "vigilance", 38, value=0.15, readout_format=".3f", **distances),
-        "cosine": made(real, "vigilance", 38, value=0.95, **cosines),
-        "order": made(menu, "order", 17, options=ORDERS),
-        "eta": made(real, "eta", 21, value=learning_rate, min=0.05, max=1.0, step=0.05),
-        "n": made(whole, "patterns", 21, value=n, min=few, max=n, step=few),
-    }
-    controls["cosine"].layout.display = "none"
+    ends, cosines = (VIGILANCES[0], VIGILANCES[-1]), (COSINES[0], COSINES[-1])
+    method = ipywidgets.Dropdown(options=list(METHODS), description="method", **narrow)
+    distance = slider("vigilance", 0.15, *ends, 0.005, readout_format=".3f", **wide)
+    cosine = slider("vigilance", 0.95, *cosines, 0.01, **wide)
+    cosine.layout.display = "none"
 
     def show_its_vigilance(change: Any) -> None:
-        angular = change["new"] == "angular"
-        controls["vigilance"].layout.display = "none" if angular else None
-        controls["cosine"].layout.display = None if angular else "none"
+        shown, hidden = (cosine, distance) if change["new"] == "angular" else (distance, cosine)
+        shown.layout.display, hidden.layout.display = None, "none"
 
-    controls["method"].observe(show_its_vigilance, names="value")
-    return controls
+    method.observe(show_its_vigilance, names="value")
+    return {
+        "method": method,
+        "vigilance": distance,
+        "cosine": cosine,
+        "order": ipywidgets.Dropdown(options=ORDERS, description="order", **narrow),
+        "eta": slider("eta", learning_rate, 0.05, 1.0, 0.05, **middle),
+        "n": slider("patterns", n, few, n, few, **middle),
+    }
 
 
 def draw(
@@ -156,30 +137,43 @@ def draw(
     """
     # A slider's steps add up to 0.15000000000000002.
     at = round(cosine if method == "angular" else vigilance, 3)
-    learned = in_order(np.asarray(patterns)[:n], order)
+    learned = segmentation.in_order(np.asarray(patterns)[:n], order)
     network = METHODS[method](at, round(eta, 3)).fit(learned)
     found = network.cluster_centers_
-    counted = f"{len(found)} categor{'y' if len(found) == 1 else 'ies'} at vigilance {at:g}"
-    if method == "angular":
-        counted += f", a cosine: {degrees(acos(at)):.1f}°"
-    elif at in THESIS_COUNTS:
-        counted = count_fact(len(found), at)
     curve = _cosine_curve if method == "angular" else _distance_curve
-    covered = coverage(network, patterns)
-    error = quantization_error(patterns, network.predict(patterns))
-    fact = f"{counted}; coverage {100 * covered:.1f} %, error {error:.3f}"
-    return Scene(fact, [_map(found), curve(references.get(method, {}), at, len(found))])
+    panels = [_map(found), curve(references.get(method, {}), at, len(found))]
+    return Scene(segmentation.partition_fact(network, patterns), panels)
 
 
-def _map(found: np.ndarray) -> Panel:
-    polygons, colors = map_of(found)
-    across, up = in_view(found).T
+def _map(found: NDArray[np.float64]) -> Panel:
+    polygons, colors = segmentation.map_of(found)
+    across, up = segmentation.in_view(found).T
+    window = (*segmentation.ORIENTATION, *segmentation.DISTANCE)
     dots = Points(across, up, radius=style.dot_radius(len(found)) / 0.75)
     return Panel(
         "ball orientation (rad), left of the robot is left", "distance (mm)",
         style.VIEW_ORIENTATION, style.VIEW_DISTANCE,
-        [Cells(polygons, colors, (*ORIENTATION, *DISTANCE)), dots], width=1.45,
+        [Cells(polygons, colors, window), dots], width=1.45,
     )  # fmt: skip
+
+
+def _distance_curve(counts: Mapping[float, int], vigilance: float, n: int) -> Panel:
+    printed = Points(list(THESIS_COUNTS), list(THESIS_COUNTS.values()), 5.0, hollow=True)
+    layers = [
+        *_counts(counts, vigilance, n, 15, printed),
+        Points([0.07], [3600], 5.0, hollow=True),
+        Text(0.079, 3600, "the thesis"),
+        *_key((0.065, 0.075), 0.079, 2400, 1600),
+    ]
+    return Panel(
+        "vigilance (a distance)", "categories", (0.022, 0.22), (15, 5000), layers, log="xy",
+        xticks=[0.025, 0.05, 0.1, 0.2], yticks=[30, 100, 300, 1000, 3000],
+    )  # fmt: skip
+
+
+def _cosine_curve(counts: Mapping[float, int], cosine: float, n: int) -> Panel:
+    layers = [*_counts(counts, cosine, n, 0), *_key((0.51, 0.54), 0.56, 66, 61)]
+    return Panel("vigilance (a cosine)", "categories", (0.49, 1.0), (0, 70), layers)
 
 
 def _counts(
@@ -194,29 +188,11 @@ def _counts(
     ]
 
 
-def _distance_curve(counts: Mapping[float, int], vigilance: float, n: int) -> Panel:
-    printed = Points(list(THESIS_COUNTS), list(THESIS_COUNTS.values()), 5.0, hollow=True)
-    layers = [
-        *_counts(counts, vigilance, n, 15, printed),
-        Points([0.07], [3600], 5.0, hollow=True),
-        Text(0.079, 3600, "the thesis"),
-        Line([0.065, 0.075], [2400, 2400], style.OURS),
-        Text(0.079, 2400, "all, as recorded", style.OURS),
-        Points([0.07], [1600], 5.0, style.OURS),
-        Text(0.079, 1600, "on the left", style.OURS),
+def _key(mark: tuple[float, float], words: float, line: float, dot: float) -> list[Layer]:
+    """Return what line and dot stand for: the marks, the words, and the height of each row."""
+    return [
+        Line(mark, [line, line], style.OURS),
+        Text(words, line, "all, as recorded", style.OURS),
+        Points([sum(mark) / 2], [dot], 5.0, style.OURS),
+        Text(words, dot, "on the left", style.OURS),
     ]
-    return Panel(
-        "vigilance (a distance)", "categories", (0.022, 0.22), (15, 5000), layers, log="xy",
-        xticks=[0.025, 0.05, 0.1, 0.2], yticks=[30, 100, 300, 1000, 3000],
-    )  # fmt: skip
-
-
-def _cosine_curve(counts: Mapping[float, int], cosine: float, n: int) -> Panel:
-    layers = [
-        *_counts(counts, cosine, n, 0),
-        Line([0.51, 0.54], [66, 66], style.OURS),
-        Text(0.56, 66, "all, as recorded", style.OURS),
-        Points([0.525], [61], 5.0, style.OURS),
-        Text(0.56, 61, "on the left", style.OURS),
-    ]
-    return Panel("vigilance (a cosine)", "categories", (0.49, 1.0), (0, 70), layers)

@@ -7,8 +7,10 @@ import pytest
 
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.pomdp import problem, successors, to_triangle
-from arkaq_edu.widgets import belief, belief_explorer
-from arkaq_edu.widgets.belief import PROBLEMS, WORLD, follow
+from arkaq_edu.pomdp.simplex import TETRAHEDRON
+from arkaq_edu.pomdp.turns import WORLD, follow
+from arkaq_edu.widgets import belief_explorer
+from arkaq_edu.widgets.belief import PROBLEMS
 from arkaq_edu.widgets.scene import Cells, Line, Points, Text
 
 FIGURE_2_7 = ("corridor", "right", "nothing", "right", "nothing")
@@ -103,7 +105,7 @@ def test_a_belief_stands_where_its_corners_draw_it(explorer, turns, name, n):
     assert sum(edge.dashed for edge in edges) == (n == 4), "one edge of a tetrahedron is hidden"
     (x,), (y,) = of_kind(trail, Points)[-1].x, of_kind(trail, Points)[-1].y
     start = problem(name).start
-    ordered = to_triangle(np.eye(3)) if n == 3 else belief._TETRAHEDRON
+    ordered = to_triangle(np.eye(3)) if n == 3 else TETRAHEDRON
     assert corners == {tuple(corner) for corner in ordered.tolist()}
     assert (x, y) == pytest.approx(tuple(start @ ordered))
     names = [word.text for word in of_kind(trail, Text)]

@@ -1,8 +1,12 @@
 """Explorers without a browser: what moves them, what is sent, what is stored."""
 
 import base64
+import gc
+import importlib
 import io
 import itertools
+import pkgutil
+import weakref
 from pathlib import Path
 
 import ipywidgets
@@ -11,8 +15,10 @@ import pytest
 from IPython.core.formatters import DisplayFormatter
 from PIL import Image
 
+import arkaq_edu.widgets
 from arkaq_edu.widgets import Buttons, CanvasView, Drag, Explorer
 from arkaq_edu.widgets import explorer as module
+from arkaq_edu.widgets.explorer import slider
 from arkaq_edu.widgets.scene import Cells, Panel, Points, Scene
 
 
@@ -94,12 +100,12 @@ def test_an_explorer_goes_step_by_step_with_buttons():
         explorer.controls["steps"].press("up")
 
 
-def pulled(number, start, to, panel=0, phase="move"):
-    return {"number": number, "panel": panel, "from": start, "to": to, "phase": phase}
+def pulled(number, start, to, phase="move"):
+    return {"number": number, "panel": 0, "from": start, "to": to, "phase": phase}
 
 
-def slider(value=0.5, step=0.1, low=0, high=1):
-    return ipywidgets.FloatSlider(value, min=low, max=high, step=step)
+def belief(value=0.5, step=0.1, low=0, high=1):
+    return slider("belief", value, low, high, step)
 
 
 def test_a_drag_moves_its_slider_to_the_stop_next_to_the_pointer():
@@ -118,7 +124,7 @@ def test_a_drag_moves_its_slider_to_the_stop_next_to_the_pointer():
 
 
 def test_arrow_keys_step_and_none_is_lost_when_the_kernel_was_busy():
-    one = Drag(slider())
+    one = Drag(belief())
     view = CanvasView()
     one.follow(view)
     for pressed, value in [((1, 0), 0.6), ((1, 1), 0.7), ((-2, 1), 0.4), ((30, 1), 1.0)]:
@@ -127,40 +133,111 @@ def test_arrow_keys_step_and_none_is_lost_when_the_kernel_was_busy():
 
 
 def test_a_drag_by_gain_goes_from_where_the_sliders_were_and_tells_of_both_at_once():
-    both = Drag(slider(0, 1, -90, 90), slider(30, 1, 0, 60), panel=1, gain=(-20, 10))
+    both = Drag(belief(0, 1, -90, 90), belief(30, 1, 0, 60), gain=(-20, 10))
     view, told = CanvasView(), []
     both.follow(view)
     both.observe(lambda change: told.append(change["new"]), names="value")
-    view.drag = pulled(1, (0.5, 0.5), (1.5, 1.0), panel=1, phase="begin")
-    view.drag = pulled(1, (0.5, 0.5), (2.5, 1.5), panel=1)
+    view.drag = pulled(1, (0.5, 0.5), (1.5, 1.0), phase="begin")
+    view.drag = pulled(1, (0.5, 0.5), (2.5, 1.5))
     assert told == [(-20, 35), (-40, 40)], "not added up: it is counted from where it began"
-    view.drag = pulled(2, (0.0, 0.0), (0.0, 9.0), panel=1)
+    view.drag = pulled(2, (0.0, 0.0), (0.0, 9.0))
     assert both.value == (-40, 60), "no further than the slider goes"
-    view.drag = pulled(3, (0.0, 0.0), (1.0, 1.0), panel=0)
-    assert both.value == (-40, 60), "that was another panel's"
     view.arrows = (1, -2)
-    assert both.value == (-40, 60), "and so are the keys, then"
-    view.drag = pulled(4, (0.0, 0.0), (0.0, 0.0), panel=1)
-    view.arrows = (2, -4)
     assert both.value == (-41, 58), "a key goes the way that a drag goes"
     told.clear()
     both.value = (7, 8)
     assert [slider.value for slider in both.children] == [7, 8] and set(told) == {(7, 8)}
 
 
-def test_two_drags_share_a_canvas():
-    view = CanvasView()
-    one, other = Drag(slider()), Drag(y=slider(), panel=1)
-    one.follow(view)
-    other.follow(view)
-    assert view.draggable == [0, 1]
-    view.arrows = (1, 0)
-    assert (one.value, other.value) == pytest.approx((0.6, 0.5)), "keys are the first one's"
-    view.drag = pulled(1, (0.0, 0.0), (0.9, 0.2), panel=1)
-    assert (one.value, other.value) == pytest.approx((0.6, 0.2))
-
-
 def test_the_script_tells_all_that_a_drag_reads():
     script = Path(module.__file__).with_name("canvas.js").read_text()
     for name in ("drag", "arrows", "draggable"):
         assert f'"{name}"' in script and CanvasView.class_traits()[name].metadata["sync"]
+
+
+# --- closed is closed -----------------------------------------------------------------------------
+
+MAKERS = [
+    getattr(arkaq_edu.widgets, name)
+    for name in arkaq_edu.widgets.__all__
+    if name.endswith("_explorer") or name == "control_panel"
+]
+
+
+def alive():
+    """All widgets that ipywidgets keeps, and would save with the notebook."""
+    return set(ipywidgets.widgets.widget._instances)
+
+
+def play(explorer):
+    """Move every control once, as a reader does."""
+    for control in explorer.controls.values():
+        if hasattr(control, "press"):
+            names = getattr(control, "names", None) or control.problems["corridor"].actions
+            control.press(names[0])
+        elif hasattr(control, "menu"):
+            control.menu.index = 1
+    for control in explorer.controls.values():
+        if hasattr(control, "options"):
+            control.index = 0
+        elif hasattr(control, "min"):
+            control.value = control.max
+    if "turns" in explorer.controls:
+        explorer.controls["turns"].menu.value = "tiger"
+    assert explorer.error is None
+
+
+@pytest.mark.parametrize("make", MAKERS, ids=lambda make: make.__name__)
+def test_of_a_closed_explorer_no_widget_is_left(make):
+    before = alive()
+    explorer = make()
+    play(explorer)
+    assert len(alive() - before) > 5
+    explorer.close()
+    assert alive() == before
+    gone = weakref.ref(explorer.view)
+    del explorer
+    gc.collect()
+    assert gone() is None, "and its memory is given back"
+
+
+@pytest.fixture
+def run_cell(monkeypatch):
+    """A function that runs code as a notebook does: in a cell, by a request of its own."""
+    shell, numbers = type("Shell", (), {})(), itertools.count()
+    monkeypatch.setattr(module, "get_ipython", lambda: shell)
+    monkeypatch.setattr(module, "_MADE", {})
+
+    def run(cell, make):
+        header = {"msg_id": f"request {next(numbers)}"}
+        request = {"header": header, "metadata": {"cellId": cell} if cell else {}}
+        shell.get_parent = lambda: request
+        return make()
+
+    return run
+
+
+def test_a_cell_that_runs_again_leaves_no_widget_over(run_cell):
+    def two():
+        return [Explorer(dot_at, x=slider("x", 3, 0, 20)) for _ in range(2)]
+
+    before = alive()
+    run_cell("a", two)
+    once = len(alive() - before)
+    for _ in range(3):
+        kept = run_cell("a", two)
+        assert len(alive() - before) == once
+    assert all(explorer.comm is not None for explorer in kept), "both of the last run are open"
+    run_cell("b", two)
+    run_cell(None, two)
+    assert len(alive() - before) == 3 * once, "what other cells made stays"
+
+
+def test_every_cache_of_an_explorer_has_a_bound():
+    caches = []
+    for package in (arkaq_edu.widgets, arkaq_edu.experiments, arkaq_edu.mdp, arkaq_edu.pomdp):
+        for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            members = vars(importlib.import_module(found.name)).values()
+            caches += [member for member in members if hasattr(member, "cache_info")]
+    assert len(caches) >= 7
+    assert all(cache.cache_info().maxsize for cache in caches)

@@ -6,10 +6,10 @@ import re
 import numpy as np
 import pytest
 
-from arkaq_edu.field import Camera, GoalSupervisor, Legs, World, pitch
+from arkaq_edu.field import Camera, Legs, World, pitch
+from arkaq_edu.field.drive import BALL, BUTTONS, ROBOT, Press
 from arkaq_edu.field.head import Head
 from arkaq_edu.widgets import control_panel
-from arkaq_edu.widgets.field import BALL, BUTTONS, ROBOT, Drive, Press
 from arkaq_edu.widgets.scene import Line, Picture, Points, Text
 
 SEEN = re.compile(
@@ -20,11 +20,6 @@ MOVES = re.compile(
     r"the head moves, no look counts "
     r"\(true: ball ([\d,]+) mm, ([+−][\d.]+) rad; goal ([+−][\d.]+)\)"
 )
-LONG = [
-    Press("5 steps", 120, 140, 0.0), Press("step", -60, 60, 0.4),
-    Press("wait 0.1 s", 0, 0, -0.4), Press("ball to the paw", 0, 0, -0.4),
-    Press("kick", 0, 0, -0.4), Press("5 steps", 190, 190, 0.2),
-]  # fmt: skip
 
 
 @pytest.fixture
@@ -111,25 +106,6 @@ def test_a_press_remembers_the_sliders_and_later_moves_change_nothing(panel):
     assert presses.value == () and "0.0 s" in layers(panel.drawn.panels[1], Text)[1].text
 
 
-def test_going_on_is_the_same_as_beginning_anew_to_the_last_bit():
-    one, other = Drive(seed=3), Drive(seed=3)
-    for n in range(len(LONG) + 1):
-        one.follow(LONG[:n])
-    other.follow(LONG)
-    assert one.world.pose == other.world.pose and one.world.ball == other.world.ball
-    assert one.trail == other.trail and one.ball_trail == other.ball_trail
-    assert one.message == other.message and (one.picture == other.picture).all()
-    one.follow(LONG[:2])
-    other.follow([])
-    other.follow(LONG[:2])
-    fresh = Drive(seed=3)
-    fresh.follow(LONG[:2])
-    assert one.world.pose == other.world.pose == fresh.world.pose != Drive(seed=4).world.pose
-    other_luck = Drive(seed=4)
-    other_luck.follow(LONG[:2])
-    assert other_luck.world.pose != fresh.world.pose
-
-
 def test_while_the_head_moves_no_look_counts(panel):
     still = panel.drawn.panels[0]
     sharp = layers(still, Picture)[0].pixels
@@ -182,32 +158,6 @@ def test_no_mark_is_drawn_beside_the_picture(panel):
         assert named == bool(bars)
         inside.add((bool(bars), "no goal" in repr(panel)))
     assert inside == {(True, False), (False, False), (False, True)}
-
-
-def test_a_kick_says_how_far_and_whether_it_was_a_goal():
-    told = set()
-    for seed in range(12):
-        drive = Drive(seed)
-        drive.follow([Press("ball to the paw", 0, 0, 0), Press("kick", 0, 0, 0)])
-        start, end = drive.ball_trail[0], drive.world.ball
-        inside = end[0] > 2700 + 42 and abs(end[1]) < 400
-        assert GoalSupervisor(2000.0).judge(drive.world).is_success == inside
-        rolled = np.hypot(end[0] - start[0], end[1] - start[1])
-        assert drive.message == f"kicked {rolled:,.0f} mm{', a goal' if inside else ', no goal'}"
-        told.add(inside)
-    drive.follow([*drive.presses, Press("step", 0, 0, 0)])
-    assert drive.message == "" and drive.ball_trail
-    drive.follow([Press("kick", 0, 0, 0)])
-    assert drive.message == "the paw met no ball" and drive.world.ball == BALL
-
-
-def test_before_a_wall_there_is_no_room_for_the_ball():
-    drive = Drive()
-    drive.follow([Press("5 steps", 190, 190, 0.0)] * 4)
-    x, y, heading = drive.world.pose
-    assert abs(x + 245 * np.cos(heading)) > 3000 or abs(y + 245 * np.sin(heading)) > 2000
-    drive.follow([*drive.presses, Press("ball to the paw", 0, 0, 0)])
-    assert drive.message == "no room for the ball before the paw" and drive.world.ball == BALL
 
 
 def test_a_wall_stops_it(panel):

@@ -8,13 +8,12 @@ import pytest
 from matplotlib.colors import to_rgb
 from scipy import stats
 
-import arkaq_edu as ae
 from arkaq_edu.figures.drawing import style
-from arkaq_edu.kalman import fit_noise
+from arkaq_edu.kalman import walk
 from arkaq_edu.widgets import kalman, kalman_explorer
 from arkaq_edu.widgets.scene import Line, Points, Text
 
-WALK = kalman.simulated_walk()
+WALK = walk.simulated_walk()
 FACT = re.compile(
     r"mean NIS ([\d.]+) where ([\d.]+) to ([\d.]+) is right; "
     r"estimate (\d+) mm off, sightings (\d+) mm"
@@ -89,10 +88,10 @@ def test_it_starts_at_the_thesiss_r_and_the_truth_is_a_stop_that_passes():
     explorer = kalman_explorer()
     start = {name: control.value for name, control in explorer.controls.items()}
     assert start == {"r": 10.0, "q": 25.0, "dropout": 0.0}
-    explorer.controls["r"].value = kalman.SIGHTING_NOISE
+    explorer.controls["r"].value = walk.SIGHTING_NOISE
     mean, low, high = map(float, FACT.match(repr(explorer)).groups()[:3])
     assert low < mean < high
-    for name, truth in (("r", kalman.SIGHTING_NOISE), ("q", kalman.STEP_NOISE)):
+    for name, truth in (("r", walk.SIGHTING_NOISE), ("q", walk.STEP_NOISE)):
         slider = explorer.controls[name]
         stops = 10 ** (slider.min + slider.step * np.arange(41))
         assert stops[-1] == pytest.approx(10**slider.max)
@@ -111,38 +110,6 @@ def test_noise_believed_too_small_lifts_the_nis_and_too_large_lowers_it(r, q, si
 def test_a_slider_that_adds_up_steps_misses_no_other_sightings():
     one = kalman.draw(WALK, 100.0, 25.0, 0.1 + 0.2)
     assert one.fact == kalman.draw(WALK, 100.0, 25.0, 0.3).fact
-
-
-def test_over_many_walks_the_noises_are_as_named():
-    walks = [kalman.simulated_walk(seed) for seed in range(200)]
-    errors = np.concatenate([walk.Z[:, 0] - walk.truth for walk in walks])
-    steps = np.concatenate([np.diff(walk.truth) + 100 * walk.U[1:, 0] for walk in walks])
-    assert errors.std() == pytest.approx(100, rel=0.03)
-    assert steps.std() == pytest.approx(25, rel=0.03)
-    traces = [kalman.walk_filter(100, 25).filter(walk.Z, walk.U) for walk in walks]
-    nis = np.concatenate([trace.nis for trace in traces])
-    low, high = ae.kalman.chi_square_band(1, len(nis), 0.999)
-    assert low < nis.mean() < high
-    assert {walk.U.sum() for walk in walks} == {30.0}
-
-
-def test_a_walk_is_its_seeds():
-    assert (kalman.simulated_walk(7).Z == kalman.simulated_walk(7).Z).all()
-    assert (kalman.simulated_walk(7).Z != kalman.simulated_walk(8).Z).any()
-
-
-def test_likelihood_finds_the_noise_by_itself():
-    found = fit_noise(kalman.walk_filter(10, 10), WALK.Z, WALK.U)
-    assert np.sqrt(found.R[0, 0]) == pytest.approx(100, rel=0.2)
-    trace = found.filter(WALK.Z, WALK.U)
-    told = kalman.walk_filter(100, 25).filter(WALK.Z, WALK.U)
-    assert trace.log_likelihood >= told.log_likelihood
-
-
-@pytest.mark.parametrize("r, q, name", [(-1.0, 1.0, "r must"), (1.0, -1.0, "q must")])
-def test_a_negative_deviation_is_refused(r, q, name):
-    with pytest.raises(ValueError, match=name):
-        kalman.walk_filter(r, q)
 
 
 def test_a_band_is_sent_and_painted_in_its_own_shade(explorer):

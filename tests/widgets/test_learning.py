@@ -5,11 +5,10 @@ import re
 
 import numpy as np
 import pytest
-from scipy import stats
 
-from arkaq_edu.mdp import UCB, play
+from arkaq_edu.mdp import machines
+from arkaq_edu.mdp.machines import MACHINES
 from arkaq_edu.widgets import bandit_explorer, horizon_explorer, learning
-from arkaq_edu.widgets.learning import MACHINES
 from arkaq_edu.widgets.scene import Cells, Line, Points, Text
 
 CHAINS = ((2, 2.0), (5, 10.0), (6, 11.0))
@@ -134,14 +133,14 @@ def bandit():
     return bandit_explorer()
 
 
-@pytest.mark.parametrize("machines", [1, 3, 30])
+@pytest.mark.parametrize("number", [1, 3, 30])
 @pytest.mark.parametrize("reveal", [False, True])
 @pytest.mark.parametrize("n", [1, 13, 41, 120])
-def test_the_explorer_counts_what_the_presses_earned(bandit, machines, reveal, n):
-    set_all(bandit, machines=machines)
+def test_the_explorer_counts_what_the_presses_earned(bandit, number, reveal, n):
+    set_all(bandit, machines=number)
     presses = tuple(MACHINES[i % 3] for i in range(n))
     set_all(bandit, pulls=presses, reveal=reveal)
-    played = learning.game(machines, presses)
+    played = machines.game(number, presses)
     chances = played.bandit.p
     assert [MACHINES[arm] for arm in played.arms] == list(presses)
     fact = FACT.fullmatch(repr(bandit))
@@ -161,57 +160,6 @@ def test_the_explorer_counts_what_the_presses_earned(bandit, machines, reveal, n
     shown = [x.y[0] for x in left.layers if isinstance(x, Line)]
     assert shown == (pytest.approx(chances) if reveal else [])
     assert right.xlim[1] >= n and right.ylim[1] >= max(yours.y)
-
-
-def test_the_others_play_the_same_machines_as_many_pulls(bandit):
-    # Seen from the mathematics: random play loses the mean gap at every pull, give or take.
-    for machines in (3, 20):
-        chances = learning.game(machines, ()).bandit.p
-        gaps = max(chances) - chances
-        for luck in (False, True):
-            found = learning.crowd(machines, 100, luck=luck)
-            mean, std = found["random"]
-            error = std[100] / np.sqrt(learning.PLAYERS)
-            assert abs(mean[100] - 100 * gaps.mean()) < 4 * error
-            spread = 100 * (gaps.var() if not luck else chances.mean() * (1 - chances.mean()))
-            ratio = std[100] ** 2 * (learning.PLAYERS - 1) / spread
-            assert stats.chi2.cdf(ratio, learning.PLAYERS - 1) == pytest.approx(0.5, abs=0.4999)
-            assert found["UCB"][0][100] < mean[100]
-    machines = learning.game(3, ()).bandit
-    again = play(machines, UCB(), 100, players=3000, rng=99)
-    gap = (machines.best - again.expected).sum(axis=1)
-    mean, std = learning.crowd(3, 100, luck=False)["UCB"]
-    assert abs(mean[100] - gap.mean()) < 4 * std[100] / np.sqrt(learning.PLAYERS)
-
-
-def test_a_longer_axis_changes_nothing_of_what_was(bandit):
-    short, long = (learning.crowd(5, length, luck=True) for length in (40, 100))
-    for name in learning.STRATEGIES:
-        for one, other in zip(short[name], long[name], strict=True):
-            assert (one == other[:41]).all()
-
-
-def test_a_press_is_a_function_of_the_machines_and_the_history():
-    history = [MACHINES[i] for i in (0, 3, 1, 1, 2, 0, 3, 3, 2, 1)]
-    whole = learning.game(7, history).rewards
-    for n in range(len(history)):
-        assert (learning.game(7, history[:n]).rewards == whole[:n]).all()
-    changed = [*history[:4], MACHINES[0], *history[5:]]
-    other = learning.game(7, changed).rewards
-    assert (np.delete(other, 4) == np.delete(whole, 4)).all(), "the rest of the luck stays"
-    games = [learning.game(s, history).rewards.tolist() for s in range(1, 31)]
-    assert len(set(map(tuple, games))) > 25
-
-
-def test_over_all_machines_the_buttons_pay_as_they_say():
-    paid, chances = [], []
-    for machines in range(1, 31):
-        played = learning.game(machines, MACHINES * 25)
-        assert ((played.bandit.p >= 0.1) & (played.bandit.p <= 0.9)).all()
-        paid.append(played.rewards.reshape(25, 4).mean(axis=0))
-        chances.append(played.bandit.p)
-    z = (np.array(paid) - chances) / np.sqrt(np.array(chances) * (1 - np.array(chances)) / 25)
-    assert abs(z.mean()) < 4 / np.sqrt(z.size) and z.std() == pytest.approx(1, abs=0.25)
 
 
 def test_buttons_play_other_machines_are_a_new_game_and_hide_their_chances(bandit):
