@@ -87,6 +87,8 @@ def integer(name: str, value: Any, low: int = 0, high: int | None = None) -> int
     Traceback (most recent call last):
     ValueError: n_states must be an integer >= 1, got 2.5
     """
+    if type(value) is int and low <= value <= (MOST_INTEGER if high is None else high):
+        return value
     if isinstance(value, np.ndarray) and value.size == 1 and not np.ma.is_masked(value):
         value = value.item()
     is_integer = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
@@ -267,8 +269,8 @@ def _rough(sums: NDArray[np.float64], counts: NDArray[np.int64]) -> NDArray[np.b
 
 def transitions(
     name: str, value: Any, shape: tuple[int | None, int | None, int | None]
-) -> NDArray[np.float64] | list[Any]:
-    """Return distributions for each action and state, as an array or as a list of sparse matrices.
+) -> NDArray[np.float64] | tuple[Any, ...]:
+    """Return distributions for each action and state, as an array or as a tuple of sparse matrices.
 
     Parameters
     ----------
@@ -281,7 +283,7 @@ def transitions(
 
     Returns
     -------
-    ndarray, or list of scipy.sparse.csr_array
+    ndarray, or tuple of scipy.sparse.csr_array
         A copy; sparse if `value` was.
 
     Examples
@@ -292,10 +294,9 @@ def transitions(
     ((3, 3), 3)
     """
     if not (isinstance(value, (list, tuple)) and any(hasattr(M, "tocsr") for M in value)):
-        dense = distribution(name, value, shape).copy()
-        if not dense.size:
-            raise ValueError(f"{name} must have no axis of length 0, got shape {dense.shape}")
-        return dense
+        if 0 in np.shape(value):
+            raise ValueError(f"{name} must have no axis of length 0, got shape {np.shape(value)}")
+        return distribution(name, value, shape).copy()
     from scipy.sparse import csr_array
 
     matrices: list[Any] = []
@@ -324,7 +325,7 @@ def transitions(
             )
         rows.data /= np.repeat(np.where(_rough(sums, counts), sums, 1), counts)
         matrices.append(rows)
-    return matrices
+    return tuple(matrices)
 
 
 def generator(name: str, value: Any) -> np.random.Generator:

@@ -9,6 +9,7 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
+from arkaq_edu._checks import integer, shown
 from arkaq_edu.pomdp import POMDP, problem, read_pomdp
 
 
@@ -84,21 +85,25 @@ class POMDPEnv(gymnasium.Env[np.int64, np.int64]):
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.int64, dict[str, Any]]:
         """Start an episode, as the class describes."""
-        super().reset(seed=seed)
+        super().reset(seed=None if seed is None else integer("seed", seed))
         states = np.arange(self.pomdp.n_states)
-        given = dict(options or {})
-        if not given:
+        if not options:
             self.state = int(self.np_random.choice(states, p=self.pomdp.start))
-        elif set(given) == {"state"} and given["state"] in range(len(states)):
-            self.state = int(given["state"])
+        elif (
+            isinstance(options, dict)
+            and set(options) == {"state"}
+            and options["state"] in range(len(states))
+        ):
+            self.state = int(options["state"])
         else:
             raise ValueError(
-                f"options must hold a state in [0, {len(states) - 1}], got {options!r}"
+                f"options must hold a state in [0, {len(states) - 1}], got {shown(options)}"
             )
         return np.int64(self.pomdp.n_observations), {"state": self.state}
 
     def step(self, action: np.int64) -> tuple[np.int64, float, bool, bool, dict[str, Any]]:
         """Take an action, as the class describes."""
-        s, z, r, terminated = self.pomdp.step(self.state, action, self.np_random)
+        a = integer("action", action, 0, self.pomdp.n_actions - 1)
+        s, z, r, terminated = self.pomdp.step(self.state, a, self.np_random)
         self.state = int(s)
         return np.int64(z), float(r), bool(terminated), False, {"state": self.state}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from numpy.typing import ArrayLike
 
-from arkaq_edu._checks import array, distribution
+from arkaq_edu._checks import distribution
 from arkaq_edu.pomdp.belief import belief_update
 from arkaq_edu.pomdp.model import POMDP
 from arkaq_edu.pomdp.value import ValueFunction
@@ -73,7 +73,7 @@ class BeliefAgent:
         """
         if belief is None:
             belief = self.pomdp.start
-        self.belief = distribution("belief", array("belief", belief, (self.pomdp.n_states,)))
+        self.belief = distribution("belief", belief, (self.pomdp.n_states,))
         self._action: int | None = None
 
     def act(self) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +12,9 @@ from arkaq_edu._checks import array, distribution, integer
 from arkaq_edu.pomdp.model import POMDP
 
 Floats = NDArray[np.float64]
+
+# A belief whose sum is this close to 1 is taken as it is.
+NEARLY = 1e-12
 
 
 class Successors(NamedTuple):
@@ -103,8 +106,8 @@ def predict(pomdp: POMDP, b: ArrayLike, a: int) -> Floats:
     >>> predict(pomdp, [0.5, 0.5], 0)
     array([0.05, 0.95])
     """
-    b, T = _belief(pomdp, b), pomdp.T
-    return b @ T[integer("a", a, 0, pomdp.n_actions - 1)]
+    b, a, T = _belief(pomdp, b), integer("a", a, 0, pomdp.n_actions - 1), pomdp.T
+    return b @ T[a]
 
 
 def belief_update(pomdp: POMDP, b: ArrayLike, a: int, z: int) -> Floats:
@@ -153,10 +156,10 @@ def belief_update(pomdp: POMDP, b: ArrayLike, a: int, z: int) -> Floats:
     >>> once, twice.round(3)
     (array([0.9, 0.1]), array([0.988, 0.012]))
     """
-    O = pomdp.O  # noqa: E741
-    predicted = predict(pomdp, b, a)
+    b, T, O = _belief(pomdp, b), pomdp.T, pomdp.O  # noqa: E741
+    a = integer("a", a, 0, pomdp.n_actions - 1)
     z = integer("z", z, 0, pomdp.n_observations - 1)
-    joint = O[a, :, z] * predicted  # the numerator of equation 2.15
+    joint = _column(O[a], z) * (b @ T[a])  # the numerator of equation 2.15
     chance = joint.sum()  # the denominator: Pr(z | a, b)
     if not chance > 0:
         raise ValueError(
@@ -202,6 +205,8 @@ def successors(pomdp: POMDP, b: ArrayLike, a: int) -> Successors:
     """
     predicted, O = predict(pomdp, b, a), pomdp.O  # noqa: E741
     joint = O[a].T * predicted  # the numerator of equation 2.15 for every z, shape (Z, S)
+    if not isinstance(joint, np.ndarray):  # O is sparse
+        joint = joint.toarray()
     chances = joint.sum(axis=1)
     beliefs = np.full(joint.shape, np.nan)
     np.divide(joint, chances[:, np.newaxis], out=beliefs, where=chances[:, np.newaxis] > 0)
@@ -228,7 +233,7 @@ def trajectory(pomdp: POMDP, history: Iterable[str | None], seed: int = 0) -> Tr
     Raises
     ------
     ValueError
-        If a name does not exist, or an observation cannot follow.
+        If a name does not exist, an observation cannot follow, or `seed` is not an integer >= 0.
 
     References
     ----------
@@ -243,6 +248,7 @@ def trajectory(pomdp: POMDP, history: Iterable[str | None], seed: int = 0) -> Tr
     beliefs: list[Floats] = [pomdp.start]
     steps: list[tuple[int, int]] = []
     pending: int | None = None
+    seed = integer("seed", seed)
     for name in history:
         if pending is None:
             pending = _index("action", name, pomdp.actions)
@@ -272,12 +278,17 @@ def entropy(b: ArrayLike) -> float:
     -------
     float
 
+    Raises
+    ------
+    ValueError
+        If `b` is not a distribution.
+
     Examples
     --------
     >>> entropy([0.5, 0.5]), entropy([1.0, 0.0])
     (1.0, 0.0)
     """
-    p = np.asarray(b, dtype=float)
+    p = distribution("b", b, (None,))
     p = p[p > 0]
     return abs(float(p @ np.log2(p)))
 
@@ -361,8 +372,17 @@ def calibration(claims: ArrayLike, true: ArrayLike, edges: ArrayLike) -> Calibra
     return Calibration((here * p).sum(axis=(1, 2)) / made.sum(axis=0), held)
 
 
+def _column(O: Any, z: int) -> Floats:  # noqa: E741
+    """Return O[:, z], dense."""
+    return O[:, z] if isinstance(O, np.ndarray) else O[:, [z]].toarray()[:, 0]
+
+
 def _belief(pomdp: POMDP, b: ArrayLike) -> Floats:
-    return distribution("b", array("b", b, (pomdp.n_states,)))
+    if type(b) is np.ndarray and b.dtype == np.float64 and b.shape == pomdp.start.shape:
+        p = b.tolist()
+        if abs(sum(p) - 1) < NEARLY and min(p) >= 0:
+            return b  # as an update returned it: the gate would take longer than the next update
+    return distribution("b", b, pomdp.start.shape)
 
 
 def _index(kind: str, name: str | None, names: tuple[str, ...]) -> int:

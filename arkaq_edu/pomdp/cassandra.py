@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 import re
 from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
+from tqdm.auto import tqdm
 
 from arkaq_edu._checks import LARGEST
 from arkaq_edu.pomdp.model import POMDP
+from arkaq_edu.pomdp.tables import MOST_DENSE, Reward, Rows, expected_rewards
 
 Floats = NDArray[np.float64]
 
-# What a file may ask for. A table of 2^24 numbers takes 128 MiB of memory.
+# What a file may ask for. Lines are short, but each may set a whole table: so what counts is how
+# many numbers the entries of a table set in all, which takes some seconds and 256 MiB of memory.
 MOST_BYTES, MOST_NAMES, MOST_ENTRIES = 2**27, 2**16, 2**24
 
 # How far from 1 the sum of a row may be, so that 0.3333 three times is read as thirds.
@@ -29,12 +34,30 @@ RESERVED = {
     "uniform", "identity", "reset", "reward", "cost",
 }  # fmt: skip
 WORD = re.compile(r"[A-Za-z][\w-]*", re.ASCII)
+# What other dialects write, and what it is here.
+DIALECTS = {
+    "E": "'O:' for observations, 'T:' for transitions or 'R:' for rewards",
+    "costs": "'values: cost'",
+    "cost": "'values: cost'",
+    "rewards": "'values: reward' before the names, or an entry 'R: action : state : * : * number'",
+    "reward": "'values: reward' before the names, or an entry 'R: action : state : * : * number'",
+    "gamma": "'discount:'",
+    "initial": "'start:'",
+    "init": "'start:'",
+    "b0": "'start:'",
+    "P": "'T:'",
+    "Z": "'O:'",
+}
 # The quantifiers are possessive (a second +), so that a long run of digits is read only once.
 _TOKEN = re.compile(
-    r"(?P<number>[+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?+(?![\w.]))"
-    rf"|(?P<word>{WORD.pattern})|(?P<mark>[:*+-])|(?P<other>[^\s#:]++)|\s++|#[^\n]*+",
+    r"(?P<number>[+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?+(?![\w.,]))"
+    rf"|(?P<word>{WORD.pattern}+(?![^\s#:*+]))|(?P<mark>[:*+-])|(?P<other>[^\s#:]++)|\s++|#[^\n]*+",
     re.ASCII,
 )
+
+
+# What may stand between a word and the colon after it.
+_COLON = re.compile(r"(?:\s|#[^\n]*)*+:")
 
 
 class PomdpFormatError(ValueError):
@@ -110,6 +133,10 @@ class _Tokens:
                 return
         self.kind, self.text, self.at = "end", "", len(self.source)
 
+    def before_colon(self) -> bool:
+        """Return whether a colon follows the current token."""
+        return _COLON.match(self.source, self.at + len(self.text)) is not None
+
     def refuse(self, problem: str, at: int) -> NoReturn:
         line = self.source.count("\n", 0, at) + 1
         raise PomdpFormatError(problem, self.path, line, at - self.source.rfind("\n", 0, at))
@@ -123,7 +150,9 @@ class _Tokens:
         """Take one of some words or marks."""
         word = self.text
         if word not in words:
-            self.expected(" or ".join(map(repr, words)))
+            near = difflib.get_close_matches(word, words, 1)
+            advice = f" (write {near[0]!r} for {word!r})" if near and self.kind == "word" else ""
+            self.expected(" or ".join(map(repr, words)) + advice)
         self.advance()
         return word
 
@@ -171,12 +200,17 @@ class _Reader(_Tokens):
         while self.text in PREAMBLE:
             self.declaration()
         if missing := [word for word in PREAMBLE[:4] if word not in self.declared]:
+            if self.text not in (*PREAMBLE, "start", "T", "O", "R"):
+                self.known_key()
             self.expected(" and ".join(f"'{word}:'" for word in missing))
         self.make_tables()
         if self.text == "start":
             self.start()
-        while self.kind != "end":
-            self.entry()
+        with tqdm(total=len(self.source), desc=self.path, delay=2, leave=False) as bar:
+            while self.kind != "end":
+                at = self.at
+                self.entry()
+                bar.update(self.at - at)
         return self.finished()
 
     # The preamble: the discount, the sign of the rewards, and the names
@@ -188,7 +222,7 @@ class _Reader(_Tokens):
             self.refuse(f"expected '{word}:' only once", at)
         self.declared.add(word)
         if word == "discount":
-            self.gamma = self.discount()
+            self.gamma = self.number("a discount in [0, 1]", 0, 1)
         elif word == "values":
             self.costs = self.take("reward", "cost") == "cost"
         elif self.is_count():
@@ -196,28 +230,44 @@ class _Reader(_Tokens):
                 self.expected(f"a count of {word} from 1 to {MOST_NAMES}")
             self.index[word] = {str(i): i for i in range(int(self.count()))}
             self.advance()
+            if self.kind == "number" or (self.is_name() and not self.before_colon()):
+                self.expected(f"a count of {word} or their names, not both")
         else:
             self.index[word] = self.names(word)
 
-    def discount(self) -> float:
-        at, gamma = self.at, self.number("a discount in [0, 1)", 0, 1)
-        if gamma == 1:
-            self.refuse(
-                "expected a discount below 1, got 1: without an end the values would not be "
-                "finite; use a value such as 0.999 instead",
-                at,
+    def known_key(self) -> None:
+        """Refuse a key that the format does not know; say what to write for it."""
+        if self.kind == "word" and self.before_colon():
+            near = difflib.get_close_matches(self.text, [*PREAMBLE, "start"], 1)
+            meant = f"'{near[0]}:'" if near else None
+            write = DIALECTS.get(self.text, meant)
+            self.expected(
+                "a key of the format (discount, values, states, actions, observations, start, T, "
+                f"O, R){f'; write {write} instead' if write else ''}"
             )
-        return gamma
 
     def names(self, kind: str) -> dict[str, int]:
         names: dict[str, int] = {}
-        while self.is_name():
+        while self.is_name() and not self.before_colon():
             if self.text in names:
                 self.expected(f"different names for the {kind}")
             if len(names) == MOST_NAMES:
                 self.expected(f"at most {MOST_NAMES} {kind}")
             names[self.text] = len(names)
             self.advance()
+        a_key = self.text in RESERVED and (self.before_colon() or self.text == "start")
+        if self.kind == "word" and not a_key and not self.before_colon():
+            self.expected(
+                f"a count of {kind} or their names, none of them a word of the format "
+                f"(write another name, such as '{self.text}_')"
+            )
+        if self.kind in ("number", "other"):
+            word = re.sub(r"[^\w-]", "_", self.text[:40], flags=re.ASCII)
+            word = word if word[0].isalpha() else f"{kind[0]}{word}"
+            self.expected(
+                f"names of {kind} made of a letter, then letters, digits, '_' and '-' "
+                f"(such as '{word}')"
+            )
         if not names:
             self.expected(f"a count of {kind} or their names, none of them a word of the format")
         return names
@@ -234,23 +284,30 @@ class _Reader(_Tokens):
         }
         if "observations" not in self.declared:  # an MDP: its state is seen
             self.axes = {"T": self.axes["T"], "R": self.axes["R"][:3]}
-        self.table = {}
-        for letter, axes in self.axes.items():
-            shape = [self.sizes[kind] for kind in axes]
-            if letter == "R":  # it grows along the last axes where an entry needs it
-                shape[2:] = [1] * len(shape[2:])
-            self.table[letter] = np.zeros(self.affordable(letter, shape))
-        # Where in the source each row was given, for error messages.
-        self.given = {letter: np.full(table.shape[:2], -1) for letter, table in self.table.items()}
+        self.rows = {}
+        for letter in self.axes.keys() & {"T", "O"}:
+            n_actions, n_states, n = (self.sizes[kind] for kind in self.axes[letter])
+            shape = n_actions, n_states, n
+            if shape[0] * shape[1] > MOST_ENTRIES:
+                self.refuse(
+                    f"expected at most {MOST_ENTRIES} rows of {letter}, "
+                    f"not {shape[0]} x {shape[1]}",
+                    self.at,
+                )
+            self.rows[letter] = Rows(shape)
+        self.rewards: list[Reward] = []
+        self.work = dict.fromkeys("TOR", 0)
         self.belief = np.full(self.sizes["states"], 1 / self.sizes["states"])
 
-    def affordable(self, letter: str, shape: list[int]) -> list[int]:
-        if math.prod(shape) > MOST_ENTRIES:
-            sizes = " x ".join(map(str, shape))
+    def charge(self, letter: str, n: int, at: int) -> None:
+        """Count what the entries of a table cost, and refuse what costs too much."""
+        self.work[letter] += n
+        if self.work[letter] > MOST_ENTRIES:
             self.refuse(
-                f"expected a table {letter} of at most {MOST_ENTRIES} entries, not {sizes}", self.at
+                f"expected entries of {letter} that set at most {MOST_ENTRIES} numbers in all; "
+                f"with this one they set {self.work[letter]}",
+                at,
             )
-        return shape
 
     # The belief at the start
 
@@ -271,11 +328,16 @@ class _Reader(_Tokens):
             self.belief = chosen / chosen.sum()
         elif self.text == "uniform":
             self.advance()
-        elif self.is_name():
+        elif self.kind == "word":
             self.belief = np.zeros(n)
             self.belief[self.pick("states")] = 1
         else:
             self.belief = self.start_numbers(n)
+        if self.kind == "number" or (self.is_name() and not self.before_colon()):
+            self.expected(
+                "one state or a probability for each state (for several states that are equally "
+                "likely write 'start include: a b')"
+            )
 
     def start_numbers(self, n: int) -> Floats:
         """Read the probabilities of all states, or the number of one state."""
@@ -289,7 +351,10 @@ class _Reader(_Tokens):
             return np.eye(1, n, int(values[0]))[0]
         if len(values) < n:
             self.expected(f"a probability for each state ({len(values)} of {n} are given)")
-        return self.normalized("start", np.array([values]), np.array([at]))[0]
+        belief, total = np.array(values), sum(values)
+        if abs(total - 1) > ROUNDING:
+            self.wrong_sum("start", total, at)
+        return belief / total if abs(total - 1) > EXACT else belief
 
     # The entries of T, O and R
 
@@ -299,6 +364,8 @@ class _Reader(_Tokens):
             self.expected("'T', 'O' or 'R' (the entry before is complete)")
         if self.text == "O" and "O" not in self.axes:
             self.expected("no observation probabilities without 'observations:'")
+        if self.text not in (*self.axes, *PREAMBLE, "start"):
+            self.known_key()
         letter = self.take(*self.axes)
         self.take(":")
         axes = self.axes[letter]
@@ -309,9 +376,10 @@ class _Reader(_Tokens):
             key.append(self.pick(axes[len(key)]))
         block = self.block(letter, key)
         if letter == "R":
-            self.grow(key)
-        self.table[letter][tuple(key)] = block
-        self.given[letter][tuple(key[:2])] = at
+            self.rewards.append(Reward(key, block, at))
+        else:
+            self.charge(letter, self.rows[letter].cost(key, block), at)
+            self.rows[letter].set(key, block, at)
 
     def pick(self, kind: str) -> int | slice:
         """Take one state, action or observation, or ``*`` for all of them."""
@@ -336,63 +404,65 @@ class _Reader(_Tokens):
             return 1 / shape[-1]
         if (letter, len(key), word) == ("T", 1, "identity"):
             self.advance()
-            return np.eye(shape[0])
+            return sparse.eye_array(shape[0])
         if (letter, len(key), word) == ("T", 2, "reset"):
             self.advance()
             return self.belief
-        what, low, high = "a probability in [0, 1]", 0.0, 1.0
+        what, low, high = "a probability in [0, 1]", 0.0, 1.0 + ROUNDING
         if letter == "R":
             low, high = -LARGEST, LARGEST
             what = f"a reward in [{low:g}, {high:g}]"
-        return self.numbers(self.affordable(letter, shape), what, low, high)
-
-    def grow(self, key: list[Any]) -> None:
-        """Give R the axes of next state and observation, if the entry at `key` needs them."""
-        for axis, kind in enumerate(self.axes["R"][2:], 2):
-            R = self.table["R"]
-            needed = axis >= len(key) or key[axis] != slice(None)
-            if needed and R.shape[axis] < self.sizes[kind]:
-                wanted = [*R.shape[:axis], self.sizes[kind], *R.shape[axis + 1 :]]
-                self.affordable("R", wanted)
-                self.table["R"] = np.repeat(R, self.sizes[kind], axis=axis)
+        if math.prod(shape) > MOST_ENTRIES:
+            sizes = " x ".join(map(str, shape))
+            self.refuse(
+                f"expected at most {MOST_ENTRIES} numbers in an entry, not {sizes}", self.at
+            )
+        return self.numbers(shape, what, low, high) if shape else self.number(what, low, high)
 
     # The model
 
     def finished(self) -> POMDP:
-        T = self.normalized("T", self.table["T"], self.given["T"])
-        O = np.eye(len(self.belief))[np.newaxis].repeat(len(T), 0)  # noqa: E741
+        T = self.normalized("T")
+        n = len(self.belief)
         if "O" in self.axes:
-            O = self.normalized("O", self.table["O"], self.given["O"])  # noqa: E741
-        R = self.table["R"]
-        if R.ndim == 4:
-            R = np.einsum("atz,astz->ast", O, R) if R.shape[3] > 1 else R[..., 0]
-        R = np.einsum("ast,ast->as", T, R) if R.shape[2] > 1 else R[..., 0]
+            O = self.normalized("O")  # noqa: E741
+        elif n * n * len(T) <= MOST_DENSE:
+            O = np.eye(n)[np.newaxis].repeat(len(T), 0)  # noqa: E741
+        else:
+            O = [sparse.eye_array(n)] * len(T)  # noqa: E741
+        R = expected_rewards(T, O, self.rewards, lambda cost, at: self.charge("R", cost, at))
         if self.costs:
             R = 0 - R
         try:
             names = {kind: tuple(self.index[kind]) for kind in KINDS}
-            return POMDP(T, O, R.T, self.gamma, self.belief, **names)  # type: ignore[arg-type]
+            return POMDP(T, O, R, self.gamma, self.belief, **names)  # type: ignore[arg-type]
         except ValueError as error:
             self.refuse(f"expected a model: {error}", self.at)
 
-    def normalized(self, letter: str, rows: Floats, given: NDArray[np.intp]) -> Floats:
-        """Divide rows by their sums; refuse sums too far from 1, at the place of the row."""
-        sums = rows.sum(axis=-1)
-        if (wrong := np.abs(sums - 1) > ROUNDING).any():
-            where = tuple(int(i) for i in np.argwhere(wrong)[0])
-            row, at = letter, int(given[where])
-            if letter != "start":
-                a, s = (
-                    list(self.index[kind])[i]
-                    for kind, i in zip(("actions", "states"), where, strict=True)
+    def normalized(self, letter: str) -> Any:
+        """Return the rows of T or O, divided by their sums where rounding left them off 1."""
+        table = self.rows[letter].table()
+        for a, rows in enumerate(table):
+            sums = rows.sum(axis=1)
+            if (np.abs(sums - 1) > ROUNDING).any():
+                s = int(np.argmax(np.abs(sums - 1) > ROUNDING))
+                row = (
+                    f"{letter}: {list(self.index['actions'])[a]} : {list(self.index['states'])[s]}"
                 )
-                row = f"{letter}: {a} : {s}"
-            if at < 0:
-                self.refuse(f"expected the probabilities of '{row}'; they are not given", self.at)
-            self.refuse(
-                f"expected probabilities that sum to 1; those of '{row}' sum to {sums[where]:.6g}",
-                at,
-            )
-        rough = np.abs(sums - 1) > EXACT
-        rows[rough] /= sums[rough, np.newaxis]
-        return rows
+                at = self.rows[letter].place(a, s)
+                if at is None:
+                    self.refuse(
+                        f"expected the probabilities of '{row}'; they are not given", self.at
+                    )
+                self.wrong_sum(row, sums[s], at)
+            factor = np.where(np.abs(sums - 1) > EXACT, sums, 1)
+            if isinstance(rows, np.ndarray):
+                rows /= factor[:, np.newaxis]
+            else:
+                rows.data /= np.repeat(factor, np.diff(rows.indptr))
+        return table
+
+    def wrong_sum(self, row: str, total: float, at: int) -> NoReturn:
+        self.refuse(
+            f"expected probabilities that sum to 1; those of '{row}' sum to {total:.6g}", at
+        )

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from arkaq_edu._paths import course_folder, write_whole
+from arkaq_edu._files import replacing
+from arkaq_edu._paths import course_folder
 from arkaq_edu.pomdp.cassandra import KINDS, MOST_BYTES, RESERVED, WORD, PomdpFormatError, parse
 from arkaq_edu.pomdp.model import POMDP
 
@@ -31,7 +33,7 @@ def read_pomdp(path: Path | str) -> POMDP:
     ------
     PomdpFormatError
         If the file does not follow the format, a row of probabilities does not sum to 1, or the
-        discount is outside [0, 1). It names the line, the column, and what was expected there.
+        discount is outside [0, 1]. It names the line, the column, and what was expected there.
     OSError
         If the file does not exist or cannot be read.
 
@@ -54,13 +56,13 @@ def read_pomdp(path: Path | str) -> POMDP:
     by number, from 0; ``*`` stands for all of them. What is not given is 0. What is given twice
     takes its last value. A ``#`` begins a comment. Blanks and line ends only separate.
 
-    Rows whose sum is within 1e-4 of 1, as rounded decimals leave them, are divided by it. Files
-    that would need too much memory are refused: more than 128 MiB, more than 65,536 states, actions
-    or observations, or a table of more than 2^24 entries (R gets four dimensions only if it depends
-    on all four).
+    Rows whose sum is within 1e-4 of 1, as rounded decimals leave them, are divided by it. `T` and
+    `O` become arrays if they have at most 2^20 entries, and else sparse matrices, for which no
+    dense table is made. Files that would take too much memory or time are refused: more than
+    128 MiB, more than 65,536 states, actions or observations, or entries of a table that set more
+    than 2^24 numbers in all. A progress bar shows after two seconds.
 
-    The format allows a discount of 1, but with it the values of an endless future are not finite.
-    It is refused; use a value such as 0.999 instead.
+    With a discount of 1 the values are finite only up to a horizon (`solve_pomdp`).
 
     References
     ----------
@@ -152,10 +154,11 @@ def write_pomdp(pomdp: POMDP, path: Path | str) -> None:
     lines += [f"{kind}: {_declared(kind, getattr(pomdp, kind))}" for kind in KINDS]
     lines += ["start:", _row(pomdp.start), ""]
     for a in range(pomdp.n_actions):
-        lines += [f"T: {a}", *map(_row, pomdp.T[a]), "", f"O: {a}", *map(_row, pomdp.O[a]), ""]
+        lines += [*_matrix(f"T: {a}", pomdp.T[a]), "", *_matrix(f"O: {a}", pomdp.O[a]), ""]
         lines += [f"R: {a} : {s} : * : * {float(r)!r}" for s, r in enumerate(pomdp.R[:, a])]
         lines += [""]
-    write_whole("\n".join(lines).encode(), Path(path))
+    with replacing(path) as fresh:
+        fresh.write_text("\n".join(lines), encoding="utf-8")
 
 
 def _declared(kind: str, names: tuple[str, ...]) -> str:
@@ -165,6 +168,15 @@ def _declared(kind: str, names: tuple[str, ...]) -> str:
         if name in RESERVED or not WORD.fullmatch(name):
             raise ValueError(f"{kind} must be words that the file format can hold, got {name!r}")
     return " ".join(names)
+
+
+def _matrix(key: str, matrix: Any) -> list[str]:
+    """Return the rows of a matrix, or the entries of a sparse one."""
+    if isinstance(matrix, np.ndarray):
+        return [key, *map(_row, matrix)]
+    entries = matrix.tocoo()
+    places = zip(entries.row.tolist(), entries.col.tolist(), entries.data.tolist(), strict=True)
+    return [f"{key} : {s} : {n} {p!r}" for s, n, p in places]
 
 
 def _row(values: NDArray[np.float64]) -> str:

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._checks import array, distribution, number
+from arkaq_edu._checks import array, generator, shown, transitions
 from arkaq_edu.mdp.model import MDP
 
 
@@ -17,14 +17,14 @@ class POMDP:
 
     Parameters
     ----------
-    T : array_like, shape (A, S, S)
-        ``T[a, s, t]`` is the probability that action `a` leads from state `s` to state `t`.
-    O : array_like, shape (A, S, Z)
-        ``O[a, t, z]`` is the probability of observing `z` when action `a` has led to state `t`.
+    T : array_like of shape (A, S, S), or list of A scipy.sparse matrices of shape (S, S)
+        ``T[a][s, t]`` is the probability that action `a` leads from state `s` to state `t`.
+    O : array_like of shape (A, S, Z), or list of A scipy.sparse matrices of shape (S, Z)
+        ``O[a][t, z]`` is the probability of observing `z` when action `a` has led to state `t`.
     R : array_like, shape (S, A)
         ``R[s, a]`` is the reward expected for action `a` in state `s`.
     gamma : float
-        The discount rate, in [0, 1).
+        The discount rate, in [0, 1]. With 1 the values are finite only up to a horizon.
     start : array_like, shape (S,), optional
         The belief at the start. By default all states are equally likely.
     states, actions, observations : sequence of str, optional
@@ -34,7 +34,9 @@ class POMDP:
     ----------
     mdp : MDP
         The same world without the observations: its state is seen.
-    T, O, R, start : ndarray
+    T, O : ndarray, or list of scipy.sparse.csr_array
+        As given, each row divided by its sum, and read-only.
+    R, start : ndarray
         As given, and read-only.
     gamma : float
     n_states, n_actions, n_observations : int
@@ -44,7 +46,7 @@ class POMDP:
     ------
     ValueError
         If a shape does not fit, an entry is not finite, a row of `T` or `O` is not a distribution,
-        `gamma` is outside [0, 1), the number of names is wrong, or two names are equal.
+        `gamma` is outside [0, 1], the number of names is wrong, or two names are equal.
 
     Notes
     -----
@@ -82,19 +84,29 @@ class POMDP:
         actions: Sequence[str] | None = None,
         observations: Sequence[str] | None = None,
     ) -> None:
-        self.mdp = MDP(T, R, gamma, start)
-        self.T, self.R, self.start = self.mdp.T, self.mdp.R, self.mdp.start
-        self.gamma = number("gamma", gamma, 0, 1, open_high=True)
+        self.mdp = MDP(T, array("R", R, (None, None)), gamma, start)
+        self.R, self.start = self.mdp.R, self.mdp.start
+        self.T: Any = self.mdp.T  # an array or a list: T[a] is the matrix of an action
+        self.gamma = self.mdp.gamma
         self.n_states, self.n_actions = self.mdp.n_states, self.mdp.n_actions
-        O_of = array("O", O, (self.n_actions, self.n_states, None))
-        if not O_of.size:
-            raise ValueError(f"O must have shape (A, S, Z), none of them 0, got {O_of.shape}")
-        self.O = distribution("O", O_of).copy()
-        self.O.setflags(write=False)
-        self.n_observations = self.O.shape[2]
+        self.O: Any = transitions("O", O, (self.n_actions, self.n_states, None))
+        self.n_observations = self.O[0].shape[1]
         self.states = _names("states", states, self.n_states)
         self.actions = _names("actions", actions, self.n_actions)
         self.observations = _names("observations", observations, self.n_observations)
+        self.__setstate__({})
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Protect the tables of a new model, and of a copy, against changes."""
+        self.__dict__.update(state)
+        for table in (self.O,) if isinstance(self.O, np.ndarray) else self.O:
+            arrays = (
+                (table,)
+                if isinstance(table, np.ndarray)
+                else (table.data, table.indices, table.indptr)
+            )
+            for fixed in arrays:
+                fixed.setflags(write=False)
 
     def __repr__(self) -> str:
         counts = [
@@ -133,7 +145,7 @@ class POMDP:
         Raises
         ------
         ValueError
-            If a state or an action does not exist.
+            If a state or an action does not exist, or `rng` is neither a generator nor a seed.
 
         Examples
         --------
@@ -142,22 +154,31 @@ class POMDP:
         >>> s_next, z, r, terminated
         (array([1, 0]), array([1, 0]), array([5., 0.]), array([False, False]))
         """
-        rng = np.random.default_rng(rng)
+        rng = generator("rng", rng)
         s_next, r, terminated = self.mdp.step(s, a, rng)
-        sums = self.O[np.asarray(a), s_next].cumsum(axis=-1)
+        sums = _rows(self.O, a, s_next).cumsum(axis=-1)
         # The last sum may be a little below 1 by rounding. Scaled by it, no draw falls outside.
         u = rng.random(np.shape(s_next)) * sums[..., -1]
         z = (sums <= u[..., np.newaxis]).sum(axis=-1)
         return s_next, z, r, terminated
 
 
+def _rows(table: Any, a: ArrayLike, s: Any) -> NDArray[np.float64]:
+    """Return table[a, s] for some actions and states, dense."""
+    if isinstance(table, np.ndarray):
+        return table[np.asarray(a), s]
+    a, s = np.broadcast_arrays(a, s)
+    rows = [table[i][[j]].toarray()[0] for i, j in zip(a.flat, s.flat, strict=True)]
+    return np.reshape(rows, (*s.shape, -1))
+
+
 def _names(what: str, given: Sequence[str] | None, n: int) -> tuple[str, ...]:
     """Return n different names, by default the numbers from 0."""
     if given is None:
         return tuple(map(str, range(n)))
-    names = tuple(given)
+    names = () if isinstance(given, str) or not np.iterable(given) else tuple(given)
     if len(names) != n or not all(isinstance(name, str) and name for name in names):
-        raise ValueError(f"{what} must be {n} names, got {given!r}")
+        raise ValueError(f"{what} must be {n} names, got {shown(given)}")
     if len(set(names)) < n:
         twice = next(name for name in names if names.count(name) > 1)
         raise ValueError(f"{what} must be different names, got {twice!r} twice")

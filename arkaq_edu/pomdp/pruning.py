@@ -40,7 +40,7 @@ def prune(alphas: ArrayLike, tol: float = 1e-9) -> NDArray[np.intp]:
     Raises
     ------
     ValueError
-        If `alphas` has another shape or is not finite, or `tol` is negative.
+        If `alphas` has another shape or is not finite, or `tol` is negative or infinite.
 
     See Also
     --------
@@ -67,7 +67,7 @@ def prune(alphas: ArrayLike, tol: float = 1e-9) -> NDArray[np.intp]:
     A = array("alphas", alphas, (None, None))
     if not A.size:
         raise ValueError(f"alphas must have at least one row and one column, got {A.shape}")
-    pairs, _, _ = needed_sums(A, np.zeros((1, A.shape[1])), number("tol", tol, 0))
+    pairs, _, _ = needed_sums(A, np.zeros((1, A.shape[1])), number("tol", tol, 0, open_high=True))
     return np.sort(pairs[:, 0])
 
 
@@ -237,7 +237,7 @@ class Domination:
         ValueError
             If `b` is not a distribution over the states.
         """
-        b = distribution("b", array("b", b, (self.lead.shape[1],)))
+        b = distribution("b", b, (self.lead.shape[1],))
         return self.by[int((self.lead @ b).argmax())]
 
 
@@ -259,7 +259,7 @@ def dominated(alphas: ArrayLike, tol: float = 1e-9) -> list[Domination]:
     Raises
     ------
     ValueError
-        If `alphas` has another shape or is not finite, or `tol` is negative.
+        If `alphas` has another shape or is not finite, or `tol` is negative or infinite.
 
     Notes
     -----
@@ -282,7 +282,7 @@ def dominated(alphas: ArrayLike, tol: float = 1e-9) -> list[Domination]:
     >>> pd.index, pd.by
     (3, (2,))
     """
-    A = array("alphas", alphas, (None, None))
+    A, tol = array("alphas", alphas, (None, None)), number("tol", tol, 0, open_high=True)
     needed = prune(A, tol)
     found = []
     for k in np.setdiff1d(np.arange(len(A)), needed):

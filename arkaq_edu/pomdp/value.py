@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._checks import array, distribution, integer
+from arkaq_edu._checks import array, distribution, integer, integers
 from arkaq_edu.pomdp.graph import PolicyGraph
 from arkaq_edu.pomdp.trees import PolicyTree
 
@@ -37,7 +37,8 @@ class ValueFunction:
     Raises
     ------
     ValueError
-        If there is no plan, or `alphas`, `actions` and `branches` differ in length.
+        If there is no plan, `alphas`, `actions` and `branches` differ in length, a number is not
+        finite, or a branch leads to no plan.
 
     Notes
     -----
@@ -70,14 +71,18 @@ class ValueFunction:
     horizon: int | None = None
 
     def __post_init__(self) -> None:
-        n = len(array("alphas", self.alphas, (None, None)))
-        if not np.size(self.alphas):
-            raise ValueError(f"alphas must hold at least one vector, got {np.shape(self.alphas)}")
-        for name, wanted in (("actions", 1), ("branches", 2)):
-            shape = np.shape(getattr(self, name))
-            if len(shape) != wanted or shape[0] != n:
+        alphas = array("alphas", self.alphas, (None, None))
+        if not alphas.size:
+            raise ValueError(f"alphas must hold at least one vector, got {alphas.shape}")
+        n, after = len(alphas), len(alphas if self.shorter is None else self.shorter.alphas)
+        actions = integers("actions", self.actions)
+        branches = integers("branches", self.branches, 0, after - 1)
+        for name, x, wanted in (("actions", actions, 1), ("branches", branches, 2)):
+            if x.ndim != wanted or len(x) != n:
                 asked = f"({n},)" if wanted == 1 else f"({n}, any)"
-                raise ValueError(f"{name} must have shape {asked}, got {shape}")
+                raise ValueError(f"{name} must have shape {asked}, got {x.shape}")
+        # The class is frozen, but what it keeps are the converted values.
+        vars(self).update(alphas=alphas, actions=actions, branches=branches)
 
     def __len__(self) -> int:
         return len(self.alphas)
@@ -188,4 +193,4 @@ class ValueFunction:
     def _beliefs(self, b: ArrayLike) -> NDArray[np.float64]:
         n_states = self.alphas.shape[1]
         many = np.ndim(b) == 2
-        return distribution("b", array("b", b, (None, n_states) if many else (n_states,)))
+        return distribution("b", b, (None, n_states) if many else (n_states,))

@@ -71,10 +71,26 @@ def test_an_episode_can_start_in_a_given_state():
         {"state": -1},
         {"state": [0, 1]},
         {"place": 1},
+        3,
         {"state": 1, "place": 1},
     ):
         with pytest.raises(ValueError, match=r"options must hold a state in \[0, 3\]"):
             env.reset(options=options)
+
+
+def test_actions_and_seeds_pass_the_gate():
+    env = make("corridor").unwrapped
+    for seed in (-1, 1.5, "1", [1]):
+        with pytest.raises(ValueError, match="seed must be an integer >= 0"):
+            env.reset(seed=seed)
+    steps = []
+    for action in (1, np.int64(1), np.array(1), np.array([1])):
+        env.reset(seed=3)
+        steps.append(env.step(action))
+    assert steps[0] == steps[1] == steps[2] == steps[3]
+    for action in (-1, 2, 0.5, "left", None, [0, 1]):
+        with pytest.raises(ValueError, match=r"action must be an integer in \[0, 1\]"):
+            env.step(action)
 
 
 def test_steps_follow_the_model():

@@ -77,6 +77,18 @@ def test_observations_are_drawn_by_the_seed_and_with_the_chances_of_the_belief()
     assert shares == pytest.approx(successors(pomdp, after, 0).chances, abs=0.06)
 
 
+@pytest.mark.parametrize("seed", [-1, 1.5, "1", None])
+def test_a_seed_of_a_trajectory_is_a_number(seed):
+    with pytest.raises(ValueError, match="seed must be an integer >= 0"):
+        trajectory(problem("tiger"), ["listen", None], seed)
+
+
+def test_the_entropy_of_what_is_no_belief_is_refused():
+    for b in ([0.5, 0.6], [1.5, -0.5], [np.nan], [[0.5, 0.5]], []):
+        with pytest.raises(ValueError, match="b must"):
+            entropy(b)
+
+
 @pytest.mark.parametrize(
     ("b", "bits"), [([1, 0, 0], 0), ([0.5, 0.5, 0], 1), ([0.25] * 4, 2), ([0.9, 0.1], 0.468996)]
 )

@@ -4,6 +4,7 @@ import itertools
 import pickle
 import random
 import re
+import time
 import tracemalloc
 from pathlib import Path
 
@@ -202,16 +203,15 @@ def test_every_form_of_entry(tmp_path_factory, written):
         (MODEL.replace("reward", "money"), 2, 9, "'reward' or 'cost', got 'money'"),
         (MODEL.replace("values: reward\n", ""), 5, 1, "'values:', got 'T'"),
         (MODEL.replace("values", "discount: 0.2\nvalues"), 2, 1, "'discount:' only once"),
-        (MODEL.replace("0.5", "1.0"), 1, 11, "a discount below 1, got 1"),
-        (MODEL.replace("0.5", "-0.5"), 1, 11, "a discount in [0, 1), got -0.5"),
-        (MODEL.replace("0.5", "1.5"), 1, 11, "a discount in [0, 1), got 1.5"),
-        (MODEL.replace("0.5", "nan"), 1, 11, "a discount in [0, 1), got 'nan'"),
+        (MODEL.replace("0.5", "-0.5"), 1, 11, "a discount in [0, 1], got -0.5"),
+        (MODEL.replace("0.5", "1.5"), 1, 11, "a discount in [0, 1], got 1.5"),
+        (MODEL.replace("0.5", "nan"), 1, 11, "a discount in [0, 1], got 'nan'"),
         (MODEL.replace("0.5", "0.5.5"), 1, 11, "got '0.5.5'"),
         (MODEL.replace("a b", "a b a"), 3, 13, "different names for the states, got 'a'"),
         (MODEL.replace("a b", "0"), 3, 9, "a count of states from 1 to 65536, got '0'"),
         (MODEL.replace("a b", "uniform"), 3, 9, "or their names, none of them a word of the"),
         (MODEL.replace("a b", "9" * 5000), 3, 9, "a count of states from 1 to 65536, got '99"),
-        (MODEL.replace("a b", "5000"), 6, 1, "of at most 16777216 entries, not 2 x 5000 x 5000"),
+        (MODEL.replace("a b", "5000"), 8, 1, "T must be"),
         (MODEL.replace("observations: x y z\n", ""), 6, 1, "without 'observations:', got 'O'"),
         (PREAMBLE + "start: 0.5 0.6\n" + "T: * identity", 6, 8, "those of 'start' sum to 1.1"),
         (PREAMBLE + "start: 0.5\n" + "T: * identity", 7, 1, "(1 of 2 are given), got 'T'"),
@@ -238,7 +238,7 @@ def test_every_form_of_entry(tmp_path_factory, written):
         (MODEL + "R: go : a : b : w 1", 8, 17, "one of the observations (x, y, z) or '*', got 'w'"),
         (MODEL + "R: go : a : b : x 1e999", 8, 19, "a reward in [-1e+100, 1e+100], got 1e999"),
         (MODEL + "R: go : a : b : x - -1", 8, 21, "a reward in [-1e+100, 1e+100], got '-1'"),
-        (MODEL + "R: go : a : b : x inf", 8, 19, "1e+100] (0 of 1 are given), got 'inf'"),
+        (MODEL + "R: go : a : b : x inf", 8, 19, "1e+100], got 'inf'"),
         (MODEL + "states: 2", 8, 1, "'T' or 'O' or 'R', got 'states'"),
         (MODEL + "\n\n  \x00", 10, 3, r"'T' or 'O' or 'R', got '\x00'"),
     ],
@@ -254,6 +254,79 @@ def test_what_is_refused_and_where(read, tmp_path, text, line, column, said):
     assert (str(again), again.line) == (str(error), line)
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "line", "column", "said"),
+    [
+        ("a b", "L R", 3, 11, "none of them a word of the format (write another name, such as 'R_'), got 'R'"),
+        ("a b", "T O", 3, 9, "none of them a word of the format (write another name, such as 'T_'), got 'T'"),
+        ("go stay", "go reset", 4, 13, "a count of actions or their names, none of them a word"),
+        ("a b", "room.1 room.2", 3, 9, "letters, digits, '_' and '-' (such as 'room_1'), got 'room.1'"),
+        ("a b", "a 2b", 3, 11, "made of a letter, then letters, digits, '_' and '-' (such as 's2b'), got '2b'"),
+        ("a b", "a 7", 3, 11, "(such as 's7'), got '7'"),
+        ("a b", "2 5", 3, 11, "a count of states or their names, not both, got '5'"),
+        ("a b", "2 a", 3, 11, "a count of states or their names, not both, got 'a'"),
+        ("values: reward", "costs: 1", 2, 1, "R); write 'values: cost' instead, got 'costs'"),
+        ("values: reward", "rewards: 1", 2, 1, "write 'values: reward' before the names"),
+        ("values: reward", "value: reward", 2, 1, "write 'values:' instead, got 'value'"),
+        ("values: reward", "values: rewards", 2, 9, "(write 'reward' for 'rewards'), got 'rewards'"),
+        ("values: reward", "values: costs", 2, 9, "(write 'cost' for 'costs'), got 'costs'"),
+        ("discount", "gamma", 1, 1, "write 'discount:' instead, got 'gamma'"),
+        ("go stay", "go stay\nhorizon: 3", 5, 1, "observations, start, T, O, R), got 'horizon'"),
+        ("T: * identity", "T: * identity\nE: * uniform", 7, 1, "write 'O:' for observations"),
+        ("T: *", "start: a b\nT: *", 6, 10, "write 'start include: a b'), got 'b'"),
+        ("T: *", "start: a 0.5\nT: *", 6, 10, "one state or a probability for each state"),
+        ("T: *", "initial: a\nT: *", 6, 1, "write 'start:' instead, got 'initial'"),
+        ("0.5", "0,5", 1, 11, "a discount in [0, 1], got '0,5'"),
+    ],
+)  # fmt: skip
+def test_what_other_dialects_write_is_told_from_what_this_one_does(
+    read, old, new, line, column, said
+):
+    with pytest.raises(PomdpFormatError, match=re.escape(said)) as refusal:
+        read(MODEL.replace(old, new, 1))
+    assert (refusal.value.line, refusal.value.column) == (line, column)
+
+
+def test_a_word_of_the_format_with_a_colon_ends_the_names(read):
+    text = MODEL.replace("observations: x y z\n", "observations: x y z start\n  include : a\n")
+    np.testing.assert_array_equal(read(text).start, [1, 0])
+    assert read(MODEL.replace("x y z\n", "x y z # T\n")).observations == ("x", "y", "z")
+
+
+def test_without_a_discount_the_values_have_a_horizon(read):
+    assert read(MODEL.replace("0.5", "1.0")).gamma == 1
+
+
+def test_a_probability_that_rounding_left_above_one(read):
+    pomdp = read(MODEL + "T: go : a\n1.0000000000000002 0\nO: go : a\n0 1.00000001 0\n")
+    np.testing.assert_array_equal(pomdp.T[0, 0], [1, 0])
+    np.testing.assert_array_equal(pomdp.O[0, 0], [0, 1, 0])
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["T: * identity", "T: * : * : * 0", "T: * : *\nreset", "O: * uniform", "O: * : * : x 1",
+     "R: * : * : 7 : * 2"],
+)  # fmt: skip
+def test_what_a_line_costs_counts_and_not_its_length(read, line):
+    text = "discount: 0.5\nvalues: reward\nstates: 4000\nactions: 2\nobservations: x y\n"
+    text += "T: * identity\nO: * uniform\n" + f"{line}\n" * 3000
+    start = time.perf_counter()
+    said = rf"line \d+, .* entries of {line[0]} that set at most 16777216 numbers in all; with"
+    with pytest.raises(PomdpFormatError, match=said):
+        read(text)
+    assert time.perf_counter() - start < 60  # it took many minutes
+
+
+def test_rewards_of_steps_and_observations_that_cannot_happen_do_not_count(read):
+    pomdp = read(
+        MODEL + "O: go : a : x 1\nO: go : a : y 0\nO: go : a : z 0\n"
+        "R: go : a : a : y 5\nR: go : a : b : x 7\nR: go : b : b 3 6 9\n"
+        "R: stay : a\n1 2 3\n4 5 6\n"
+    )
+    np.testing.assert_allclose(pomdp.R, [[0, 2], [6, 0]], rtol=1e-15)
+
+
 def test_rewards_that_could_overflow_are_refused_where_they_stand(read):
     text = MODEL + "R: * : a : * : x 1e100\n"
     assert read(text).R[0] == pytest.approx(1e100 / 3)
@@ -267,7 +340,7 @@ def test_what_does_not_fit_is_refused_before_it_takes_memory(read, counts):
     n_states, n_actions, n_observations = counts
     text = f"discount: 0\nvalues: cost\nstates: {n_states}\nactions: {n_actions}\n"
     tracemalloc.start()
-    with pytest.raises(PomdpFormatError, match="of at most 16777216 entries, not"):
+    with pytest.raises(PomdpFormatError, match="at most 16777216 (rows|numbers)"):
         read(text + f"observations: {n_observations}\nT: * uniform\nO: * uniform\n")
     assert tracemalloc.get_traced_memory()[1] < 60e6
     tracemalloc.stop()
@@ -348,7 +421,7 @@ def test_a_million_bytes_of_damaged_files_end_in_a_model_or_in_our_error(tmp_pat
             for rows in (pomdp.T, pomdp.O, pomdp.start):
                 assert (rows >= 0).all()
                 np.testing.assert_allclose(rows.sum(axis=-1), 1, rtol=0, atol=1e-9)
-            assert 0 <= pomdp.gamma < 1
+            assert 0 <= pomdp.gamma <= 1
     assert min(n_models, n_errors) > 100  # both ends are reached
 
 
@@ -404,6 +477,14 @@ def test_what_is_written_is_read_to_the_last_bit(tmp_path_factory, pomdp):
     assert path.read_bytes() == first
 
 
+def test_what_rounding_left_above_one_is_written_and_read(tmp_path):
+    T = np.eye(2)[np.newaxis] * 1.0000000000000002
+    pomdp = POMDP(T, [[[0.9999999999999999], [1]]], [[1], [0]], 1.0)
+    assert pomdp.mdp.ends.tolist() == [False, True]
+    write_pomdp(pomdp, tmp_path / "a.pomdp")
+    assert_same(read_pomdp(tmp_path / "a.pomdp"), pomdp)
+
+
 @pytest.mark.parametrize("path", OWN, ids=lambda path: path.stem)
 def test_the_courses_files_are_written_and_read(path, tmp_path):
     pomdp = read_pomdp(path)
@@ -424,13 +505,13 @@ def test_a_name_that_the_format_cannot_hold_is_refused(tmp_path, name):
 def test_it_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
     path = tmp_path / "a.pomdp"
     path.write_text("precious")
-    whole = Path.write_bytes
+    whole = Path.write_text
 
-    def disk_full(target, data):
-        whole(target, data[: len(data) // 2])
+    def disk_full(target, text, **how):
+        whole(target, text[: len(text) // 2], **how)
         raise OSError("no space left")
 
-    monkeypatch.setattr(Path, "write_bytes", disk_full)
+    monkeypatch.setattr(Path, "write_text", disk_full)
     with pytest.raises(OSError, match="no space"):
         write_pomdp(problem("tiger"), path)
     assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("a.pomdp", "precious")]

@@ -1,6 +1,8 @@
 """A POMDP, and what is known in it: beliefs, their updates and where they lie."""
 
+import copy
 import math
+import pickle
 
 import hypothesis.strategies as st
 import numpy as np
@@ -9,7 +11,10 @@ from hypothesis import assume, given, settings
 
 from arkaq_edu.pomdp import (
     POMDP,
+    BeliefAgent,
+    ValueFunction,
     belief_update,
+    entropy,
     expected_rewards,
     predict,
     problem,
@@ -58,7 +63,7 @@ def test_a_model_cannot_be_written_to_nor_through(name):
         ({"T": [np.eye(2), [[0.5, 0.6], [0, 1]]]}, r"T must sum to 1 .* got 1.1 at \(1, 0\)"),
         ({"O": np.ones((1, 2, 1))}, r"O must have shape \(2, 2, any\), got \(1, 2, 1\)"),
         ({"O": np.ones((2, 3, 1))}, r"O must have shape \(2, 2, any\), got \(2, 3, 1\)"),
-        ({"O": np.ones((2, 2, 0))}, "O must have shape .* none of them 0"),
+        ({"O": np.ones((2, 2, 0))}, "O must have no axis of length 0"),
         ({"O": np.full((2, 2, 2), 0.4)}, r"O must sum to 1 .* got 0.8 at \(0, 0\)"),
         ({"O": [[[2, -1], [0, 1]]] * 2}, r"O must hold probabilities >= 0, got -1.0 at"),
         ({"O": [[[np.nan, 1], [0, 1]]] * 2}, "O must hold finite numbers, got nan at"),
@@ -78,6 +83,79 @@ def test_a_model_cannot_be_written_to_nor_through(name):
 def test_a_model_that_is_none_is_refused(change, said):
     with pytest.raises(ValueError, match=said):
         POMDP(**{**GOOD, **change})
+
+
+@pytest.mark.parametrize("states", [3, "ab", {"a": 1}, None, [["a"], ["b"]]])
+def test_names_are_a_sequence_of_words(states):
+    if states is None:
+        assert POMDP(**GOOD, states=states).states == ("0", "1")
+    else:
+        with pytest.raises(ValueError, match="states must be 2 names"):
+            POMDP(**GOOD, states=states)
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda x: pickle.loads(pickle.dumps(x))])
+def test_a_copy_of_a_model_is_as_protected_as_the_model(copied):
+    pomdp = copied(POMDP(**GOOD))
+    assert pomdp.T is pomdp.mdp.T
+    for table in (pomdp.T, pomdp.O, pomdp.R, pomdp.start):
+        with pytest.raises(ValueError, match="read-only"):
+            table[...] = 0
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), dtype=st.sampled_from([np.float32, np.float64]))
+def test_rows_within_rounding_of_one_are_divided_by_their_sums(seed, dtype):
+    rng = np.random.default_rng(seed)
+    S, A, Z = rng.integers(1, 7, size=3)
+    off = 0 if dtype == np.float32 else rng.uniform(-1e-8, 1e-8)
+    T, O, start = (  # noqa: E741
+        (rng.dirichlet(np.full(shape[-1], 0.3), size=shape[:-1]) * (1 + off)).astype(dtype)
+        for shape in ((A, S, S), (A, S, Z), (S,))
+    )
+    T[0, 0], O[0, 0] = np.eye(S)[0] * (1 + off), np.eye(Z)[0] * (1 + off)
+    pomdp = POMDP(T, O, np.zeros((S, A)), 0.9, start)
+    for given_, kept in ((T, pomdp.T), (O, pomdp.O), (start, pomdp.start)):
+        np.testing.assert_allclose(kept, given_, rtol=0, atol=1e-6)
+        np.testing.assert_allclose(kept.sum(axis=-1), 1, rtol=0, atol=2e-15)
+        assert kept.max() <= 1 + 1e-15
+    assert pomdp.T[0, 0, 0] == 1  # so that an end is known
+    again = POMDP(pomdp.T, pomdp.O, pomdp.R, 0.9, pomdp.start)
+    assert all(
+        getattr(again, name).tobytes() == getattr(pomdp, name).tobytes()
+        for name in ("T", "O", "start")
+    )
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), dtype=st.sampled_from([np.float32, np.float64, list]))
+def test_no_function_refuses_the_belief_of_another(seed, dtype):
+    rng = np.random.default_rng(seed)
+    S = int(rng.integers(1, 40))
+    T, O = rng.dirichlet(np.full(S, 0.3), size=(2, S)), rng.dirichlet(np.ones(3), size=(2, S))  # noqa: E741
+    pomdp = POMDP(T, O, rng.normal(size=(S, 2)), 0.9)
+    V = ValueFunction(rng.normal(size=(3, S)), [0, 1, 0], np.empty((3, 0), int))
+    b = pomdp.start
+    for _ in range(20):
+        b = belief_update(pomdp, b, int(rng.integers(2)), int(rng.integers(3)))
+        b = b.tolist() if dtype is list else b.astype(dtype)
+        for function in (V.value, V.action, entropy, BeliefAgent(pomdp, V).reset):
+            function(b)
+        for function in (predict, successors):
+            function(pomdp, b, 1)
+        expected_rewards(pomdp, b)
+    if dtype is not list:
+        assert V.value(b[np.newaxis]) == pytest.approx(V.value(b))
+
+
+def test_actions_and_observations_of_one_element_arrays():
+    tiger = problem("tiger")
+    after = belief_update(tiger, [0.5, 0.5], 0, 1)
+    for a, z in ((np.array(0), np.array([1])), (np.int8(0), np.uint64(1))):
+        np.testing.assert_array_equal(belief_update(tiger, [0.5, 0.5], a, z), after)
+    for rng in (-1, "1", 0.5):
+        with pytest.raises(ValueError, match="rng must be a numpy Generator, an integer >= 0"):
+            tiger.step(0, 0, rng)
 
 
 # Beliefs

@@ -181,6 +181,10 @@ def test_bad_vectors_are_refused():
         prune(np.empty((0, 2)))
     with pytest.raises(ValueError, match="tol must be"):
         prune([[1, 2]], tol=-1)
+    for function in (prune, dominated):
+        with pytest.raises(ValueError, match=r"tol must be a number in \[0, inf\), got inf"):
+            function([[1, 2], [2, 1]], tol=np.inf)
+    assert prune([[1, 2], [2, 1]], tol=1e99).size == 1
 
 
 def test_who_is_ahead_is_asked_of_a_belief():

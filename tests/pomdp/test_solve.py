@@ -277,6 +277,17 @@ def test_bad_input_is_refused():
         bellman_error(pomdp, solve_pomdp(problem("floors"), 1))
     with pytest.raises(ValueError, match=r"actions must have shape \(1,\), got \(2,\)"):
         ValueFunction(np.eye(2)[:1], np.array([0, 1]), np.empty((1, 0), int))
+    none = np.empty((2, 0), int)
+    for alphas, actions, branches, said in (
+        (np.eye(2), [0, np.nan], none, r"actions must hold integers, got \[0, nan\]"),
+        (np.eye(2), [0, -1], none, "actions must hold integers >= 0, got -1"),
+        (np.eye(2), [0, 1], [[0, 1], [2, 0]], r"branches must hold integers in \[0, 1\], got 2"),
+        ([[1, np.nan]], [0], none[:1], "alphas must hold finite numbers, got nan"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            ValueFunction(alphas, actions, branches)
+    kept = ValueFunction([[1, 0], [0, 1]], [1, 0], [[0, 1], [1, 0]])
+    assert (kept.alphas.dtype, kept.action([1, 0]), len(kept.graph)) == (np.float64, 1, 2)
 
 
 def test_a_plan_of_more_steps_than_python_calls_deep_can_be_written_out():
