@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy import sparse
 from tqdm.auto import tqdm
 
-from arkaq_edu._checks import array, distribution, integer, number
-from arkaq_edu._compiled import kernel
+from arkaq_edu._checks import distribution, integer, number, shown
+from arkaq_edu._compiled import word_before_compiling
+from arkaq_edu.pomdp import point_kernels
 from arkaq_edu.pomdp.model import POMDP
 from arkaq_edu.pomdp.value import ValueFunction
 
@@ -25,6 +28,11 @@ TINY = 1e-12
 # Superfluous vectors and points are dropped when there are this many times more of them than after
 # the last time: the search for them is quadratic.
 GROWTH, ROOM = 5 / 4, 8
+# The first bounds are bounds wherever their iteration stops. It stops when a sweep changes less
+# than this share of the rewards, or after this many multiplications, which take about a second.
+ENOUGH, MOST_WORK = 1e-10, 5e8
+# Up to this many states the value of a policy is the solution of a linear system.
+MOST_SOLVED = 1000
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,11 +84,11 @@ class UpperBound:
         """
         n_states = len(self.corners)
         many = np.ndim(b) == 2
-        beliefs = distribution("b", array("b", b, (None, n_states) if many else (n_states,)))
-        rows = np.array(beliefs, ndmin=2)  # a copy: kernels are compiled for writable arrays
+        beliefs = distribution("b", b, (None, n_states) if many else (n_states,))
         below = self.values - self.points @ self.corners
-        bounds = np.empty(len(rows))
-        _upper(rows, self.corners, self.points, below, self.vectors, bounds)
+        points = _Beliefs(n_states, np.reshape(self.points, (-1, n_states)))
+        rows = _Beliefs(n_states, np.reshape(beliefs, (-1, n_states)))
+        bounds = point_kernels.upper(rows.rows, self.corners, points.rows, below, self.vectors)
         return bounds if many else float(bounds[0])
 
 
@@ -127,7 +135,12 @@ class PointBased:
         )
 
 
-def solve_point_based(pomdp: POMDP, tol: float = 1e-3, max_backups: int = 10_000) -> PointBased:
+def solve_point_based(
+    pomdp: POMDP,
+    tol: float = 1e-3,
+    max_backups: int = 10_000,
+    seconds: float | None = None,
+) -> PointBased:
     """Bound the optimal value at the start from below and from above.
 
     Parameters
@@ -137,8 +150,11 @@ def solve_point_based(pomdp: POMDP, tol: float = 1e-3, max_backups: int = 10_000
     tol : float, default 1e-3
         The search ends when the bounds at the start are no further apart than this.
     max_backups : int, default 10000
-        The search also ends after this many backups. There is no time limit, so the bounds do not
-        depend on the speed of the machine.
+        The search also ends after this many backups.
+    seconds : float, optional
+        The search also ends after this time. Without it the bounds do not depend on the speed of
+        the machine. The first bounds are always made; for a thousand states they take about a
+        second.
 
     Returns
     -------
@@ -149,7 +165,8 @@ def solve_point_based(pomdp: POMDP, tol: float = 1e-3, max_backups: int = 10_000
     Raises
     ------
     ValueError
-        If `tol` is not above 0 or `max_backups` is not an integer >= 0.
+        If `pomdp` is not a POMDP or its discount is 1, `tol` is not above 0, `max_backups` is not
+        an integer >= 0, or `seconds` is negative.
 
     See Also
     --------
@@ -189,93 +206,173 @@ def solve_point_based(pomdp: POMDP, tol: float = 1e-3, max_backups: int = 10_000
     >>> found.gap <= 1e-3, round(found.lower.value([0.5, 0.5]), 2), found.lower.action([0.5, 0.5])
     (True, 3.79, 0)
     """
-    tol = number("tol", tol, 0, open_low=True)
+    if not isinstance(pomdp, POMDP):
+        raise ValueError(f"pomdp must be a POMDP, got {shown(pomdp)}")
+    if pomdp.gamma == 1:
+        raise ValueError(
+            "pomdp must have a discount below 1 for an endless future; with 1 use "
+            "solve_pomdp(pomdp, horizon)"
+        )
+    tol = number("tol", tol, 0, open_low=True, open_high=True)
     max_backups = integer("max_backups", max_backups, 0)
+    seconds = np.inf if seconds is None else number("seconds", seconds, 0, open_high=True)
+    stop = time.monotonic() + seconds
     search, backups = _Search(pomdp), 0
     with tqdm(total=max_backups, desc="bounds", unit="backup", delay=2, leave=False) as bar:
         while backups < max_backups and (gap := search.gap(pomdp.start)) > tol:
-            steps = search.trial(max_backups - backups)
+            if time.monotonic() >= stop:
+                break
+            steps = search.trial(max_backups - backups, stop)
             backups += steps
             bar.update(steps)
             bar.set_postfix(gap=f"{gap:.2g}", refresh=False)
     low, high = search.lower, search.upper
     # V* is nowhere above the plane through the corners, and V nowhere below any of its vectors.
-    error = float((high.corners - low.alphas).max(axis=1).min())
-    lower = ValueFunction(low.alphas, low.actions, low.branches, None, error)
-    values = high.below + high.points @ high.corners
-    upper = UpperBound(high.corners, high.points, values, high.vectors)
+    error = float((high.corners - low.alphas.filled).max(axis=1).min())
+    lower = ValueFunction(low.alphas.filled, low.actions.filled, low.branches.filled, None, error)
+    points = high.points.dense()
+    values = high.below.filled + points @ high.corners
+    upper = UpperBound(high.corners, points, values, high.vectors)
     return PointBased(lower, upper, pomdp.start, backups)
 
 
-class _Ahead(NamedTuple):
-    """What can follow a belief, for each action and observation.
+class _Growing:
+    """An array that grows row by row."""
 
-    The bounds are those of the next belief, times the probability of getting there.
-    """
+    def __init__(self, rows: NDArray[Any]) -> None:
+        self.room, self.n = rows, len(rows)
 
-    joint: Floats  # (A, Z, S): Pr(s', z | b, a)
-    lower: Floats  # (A, Z)
-    branches: Ints  # (A, Z): the vector that attains `lower`
-    upper: Floats  # (A, Z)
+    @property
+    def filled(self) -> NDArray[Any]:
+        return self.room[: self.n]
+
+    def append(self, rows: Any) -> None:
+        n = self.n + len(rows)
+        if n > len(self.room):
+            room = np.empty((2 * n, *self.room.shape[1:]), self.room.dtype)
+            room[: self.n] = self.filled
+            self.room = room
+        self.room[self.n : n] = rows
+        self.n = n
+
+
+class _Beliefs:
+    """Beliefs that grow in number, without their zeros."""
+
+    def __init__(self, n_states: int, beliefs: Floats) -> None:
+        self.n_states = n_states
+        matrix = sparse.csr_array(beliefs)
+        self.ends = _Growing(matrix.indptr.astype(np.int64))
+        self.states = _Growing(matrix.indices.astype(np.int64))
+        self.chances = _Growing(matrix.data)
+
+    @property
+    def rows(self) -> tuple[Ints, Ints, Floats]:
+        """Where each row begins and ends; the states in it; their probabilities."""
+        return self.ends.filled, self.states.filled, self.chances.filled
+
+    def append(self, b: Floats) -> None:
+        states = np.flatnonzero(b)
+        self.states.append(states)
+        self.chances.append(b[states])
+        self.ends.append([self.states.n])
+
+    def dense(self) -> Floats:
+        ends, states, chances = self.rows
+        shape = (len(ends) - 1, self.n_states)
+        return sparse.csr_array((chances, states, ends), shape).toarray()
 
 
 class _Search:
-    """Heuristic search: where to improve the two bounds, and how."""
+    """Heuristic search: where to improve the two bounds, and how.
+
+    The model is held without its zeros. `seen` has a row for each action and observation.
+    """
 
     def __init__(self, pomdp: POMDP) -> None:
+        word_before_compiling(point_kernels.upper, "the bounds")
+        A, Z, S = pomdp.n_actions, pomdp.n_observations, pomdp.n_states
         self.pomdp = pomdp
-        self.seen = np.ascontiguousarray(pomdp.O.transpose(0, 2, 1))  # (A, Z, S): O(s', a, z)
+        self.T = [sparse.csr_array(pomdp.T[a]) for a in range(A)]
+        self.to_next = sparse.vstack([T.T for T in self.T], format="csr")  # row (a, s'), column s
+        seen = sparse.vstack([sparse.csr_array(pomdp.O[a]).T for a in range(A)], format="csr")
+        self.seen = seen.data  # O(s', a, z) at row (a, z), column s'
+        self.ends, self.states = seen.indptr.astype(np.int64), seen.indices.astype(np.int64)
+        row = np.repeat(np.arange(A * Z), np.diff(seen.indptr))
+        self.place = row // Z * S + self.states  # where (a, s') is in `to_next`
+        self.z = row % Z
         self.lower, self.upper = _Lower(pomdp), _Upper(pomdp)
 
     def gap(self, b: Floats) -> float:
-        return float(self.upper.at(np.array([b]))[0]) - self.lower.value(b)
+        return self.upper.value(b) - self.lower.value(b)
 
-    def look(self, b: Floats) -> _Ahead:
-        joint = (b @ self.pomdp.T)[:, np.newaxis] * self.seen  # equation 2.15, not yet divided
-        beliefs = joint.reshape(-1, len(b))
-        lower, branches = self.lower.at(beliefs)
-        upper = self.upper.at(beliefs)
-        AZ = joint.shape[:2]
-        return _Ahead(joint, lower.reshape(AZ), branches.reshape(AZ), upper.reshape(AZ))
+    def look(self, b: Floats) -> tuple[Floats, Floats, Ints, Floats]:
+        """Return what can follow a belief.
+
+        `joint` is Pr(s', z | b, a), the numerator of equation 2.15, where `seen` is not zero. The
+        others have shape (A, Z): the lower bound of the next belief and the vector that attains it,
+        and the upper bound, both times the probability of getting there.
+        """
+        predicted = self.to_next @ b  # sum_s T(s, a, s') b(s), for every a and s'
+        joint = self.seen * predicted[self.place]
+        rows = self.ends, self.states, joint
+        AZ = self.pomdp.n_actions, self.pomdp.n_observations
+        lower, branches = point_kernels.lower(rows, self.lower.alphas.filled)
+        upper = self.upper.at(rows)
+        return joint, lower.reshape(AZ), branches.reshape(AZ), upper.reshape(AZ)
 
     def improve(self, b: Floats) -> None:
         """Back up both bounds at a belief; a bound that would not improve is left as it is."""
-        R, T, gamma = self.pomdp.R, self.pomdp.T, self.pomdp.gamma
-        ahead = self.look(b)
-        high = (b @ R + gamma * ahead.upper.sum(axis=1)).max()
-        if high < self.upper.at(np.array([b]))[0] - TINY * abs(high):
+        R, T, gamma = self.pomdp.R, self.T, self.pomdp.gamma
+        _, lower, branches, upper = self.look(b)
+        high = (b @ R + gamma * upper.sum(axis=1)).max()
+        if high < self.upper.value(b) - TINY * abs(high):
             self.upper.add(b, high)
-        earned = b @ R + gamma * ahead.lower.sum(axis=1)
+        earned = b @ R + gamma * lower.sum(axis=1)
         a = int(earned.argmax())
         if earned[a] > self.lower.value(b) + TINY * abs(earned[a]):
-            later = (self.seen[a] * self.lower.alphas[ahead.branches[a]]).sum(axis=0)
-            self.lower.add(R[:, a] + gamma * T[a] @ later, a, ahead.branches[a])  # equation 2.19
+            later = self.later(a, branches[a])
+            self.lower.add(R[:, a] + gamma * T[a] @ later, a, branches[a])  # equation 2.19
 
-    def trial(self, most: int) -> int:
+    def later(self, a: int, branches: Ints) -> Floats:
+        """Return sum_z O(s', a, z) V_z(s') for every s', where V_z is the vector that follows z."""
+        Z = len(branches)
+        here = slice(self.ends[a * Z], self.ends[(a + 1) * Z])
+        z, states = self.z[here], self.states[here]
+        V = self.lower.alphas.filled[branches[z], states]
+        return np.bincount(states, self.seen[here] * V, self.pomdp.n_states).astype(float)
+
+    def trial(self, most: int, stop: float) -> int:
         """Walk to where the bounds are too far apart, and improve them on the way back.
 
-        Return the number of backups.
+        Return the number of backups, at most `most`. After the time `stop` it makes only one more.
         """
-        R, gamma = self.pomdp.R, self.pomdp.gamma
+        R, gamma, Z = self.pomdp.R, self.pomdp.gamma, self.pomdp.n_observations
         b: Floats = self.pomdp.start
         path: list[Floats] = []
         enough = ZETA * self.gap(b)
         while len(path) < most:
             path.append(b)
             enough = enough / gamma if gamma else np.inf
-            ahead = self.look(b)
-            a = (b @ R + gamma * ahead.upper.sum(axis=1)).argmax()
-            chances = ahead.joint[a].sum(axis=1)
-            excess = ahead.upper[a] - ahead.lower[a] - chances * enough
-            z = excess.argmax()
-            if not excess[z] > 0:
+            joint, lower, _, upper = self.look(b)
+            a = int((b @ R + gamma * upper.sum(axis=1)).argmax())
+            rows = [slice(*self.ends[k : k + 2]) for k in range(a * Z, (a + 1) * Z)]
+            chances = np.array([joint[row].sum() for row in rows])
+            excess = upper[a] - lower[a] - chances * enough
+            z = int(excess.argmax())
+            if not excess[z] > 0 or time.monotonic() >= stop:
                 break
-            b = ahead.joint[a, z] / chances[z]
+            b = np.zeros(len(b))
+            b[self.states[rows[z]]] = joint[rows[z]] / chances[z]
+        backups = 0
         for b in reversed(path):
             self.improve(b)
+            backups += 1
+            if time.monotonic() >= stop:
+                break
         self.lower.tidy()
         self.upper.tidy()
-        return len(path)
+        return backups
 
 
 class _Lower:
@@ -283,38 +380,31 @@ class _Lower:
 
     def __init__(self, pomdp: POMDP) -> None:
         A, Z = pomdp.n_actions, pomdp.n_observations
-        # What each action earns if it is taken for ever: V = R + gamma T V.
-        systems = np.eye(pomdp.n_states) - pomdp.gamma * pomdp.T
-        self.alphas: Floats = np.linalg.solve(systems, pomdp.R.T[..., np.newaxis])[..., 0]
-        self.actions = np.arange(A)
-        self.branches = np.repeat(self.actions[:, np.newaxis], Z, axis=1)
+        self.alphas = _Growing(blind_policies(pomdp))
+        self.actions = _Growing(np.arange(A))
+        self.branches = _Growing(np.repeat(np.arange(A)[:, np.newaxis], Z, axis=1))
         self.limit: float = 2 * A
 
     def value(self, b: Floats) -> float:
-        return float((self.alphas @ b).max())
-
-    def at(self, beliefs: Floats) -> tuple[Floats, Ints]:
-        """Return the bound at some beliefs, and the vectors that attain it."""
-        bounds, best = np.empty(len(beliefs)), np.empty(len(beliefs), dtype=np.int64)
-        _lower(beliefs, self.alphas, bounds, best)
-        return bounds, best
+        return float((self.alphas.filled @ b).max())
 
     def add(self, alpha: Floats, action: int, branches: Ints) -> None:
-        self.alphas = np.concatenate([self.alphas, alpha[np.newaxis]])
-        self.actions = np.append(self.actions, action)
-        self.branches = np.concatenate([self.branches, branches[np.newaxis]])
+        self.alphas.append([alpha])
+        self.actions.append([action])
+        self.branches.append([branches])
 
     def tidy(self) -> None:
         """Drop vectors that are nowhere above another one, which takes their place."""
-        if len(self.alphas) <= self.limit:
+        alphas, actions, branches = (x.filled for x in (self.alphas, self.actions, self.branches))
+        if len(alphas) <= self.limit:
             return
-        by = np.arange(len(self.alphas))
-        _dominated(self.alphas, by)
+        by = np.arange(len(alphas))
+        point_kernels.dominated(alphas, by)
         kept = np.flatnonzero(by == np.arange(len(by)))
         while (by[by] != by).any():  # the one that takes the place may itself be dropped
             by = by[by]
-        self.branches = np.searchsorted(kept, by[self.branches[kept]])
-        self.alphas, self.actions = self.alphas[kept], self.actions[kept]
+        self.branches = _Growing(np.searchsorted(kept, by[branches[kept]]))
+        self.alphas, self.actions = _Growing(alphas[kept]), _Growing(actions[kept])
         self.limit = GROWTH * len(kept) + ROOM
 
 
@@ -324,25 +414,56 @@ class _Upper:
     def __init__(self, pomdp: POMDP) -> None:
         self.vectors = fast_informed_bound(pomdp)
         self.corners = self.vectors.max(axis=0)
-        self.points, self.below = np.empty((0, pomdp.n_states)), np.empty(0)
+        self.points = _Beliefs(pomdp.n_states, np.empty((0, pomdp.n_states)))
+        self.below = _Growing(np.empty(0))
         self.limit: float = 2 * pomdp.n_actions
 
-    def at(self, beliefs: Floats) -> Floats:
-        bounds = np.empty(len(beliefs))
-        _upper(beliefs, self.corners, self.points, self.below, self.vectors, bounds)
-        return bounds
+    def at(self, rows: tuple[Ints, Ints, Floats]) -> Floats:
+        return point_kernels.upper(
+            rows, self.corners, self.points.rows, self.below.filled, self.vectors
+        )
+
+    def value(self, b: Floats) -> float:
+        states = np.flatnonzero(b)
+        return float(self.at((np.array([0, len(states)]), states, b[states]))[0])
 
     def add(self, b: Floats, value: float) -> None:
-        self.points = np.concatenate([self.points, b[np.newaxis]])
-        self.below = np.append(self.below, value - b @ self.corners)
+        self.points.append(b)
+        self.below.append([value - b @ self.corners])
 
     def tidy(self) -> None:
         """Drop points that are not below the sawtooth of the others."""
-        if len(self.points) <= self.limit:
+        if self.below.n <= self.limit:
             return
-        kept = np.flatnonzero(_needed(self.points, self.below))
-        self.points, self.below = self.points[kept], self.below[kept]
-        self.limit = GROWTH * len(kept) + ROOM
+        needed = point_kernels.needed(self.points.rows, self.below.filled, len(self.corners))
+        ends, states, chances = self.points.rows
+        inside = np.repeat(needed, np.diff(ends))
+        self.points.ends = _Growing(np.append(0, np.diff(ends)[needed].cumsum()))
+        self.points.states = _Growing(states[inside])
+        self.points.chances = _Growing(chances[inside])
+        self.below = _Growing(self.below.filled[needed])
+        self.limit = GROWTH * self.below.n + ROOM
+
+
+def blind_policies(pomdp: POMDP) -> Floats:
+    """Return what each action earns if it is taken for ever: V = R + gamma T V, shape (A, S).
+
+    For many states the equation is repeated from below, so the values are never too high.
+    """
+    R, T, gamma = pomdp.R, pomdp.T, pomdp.gamma
+    A, S = pomdp.n_actions, pomdp.n_states
+    if S <= MOST_SOLVED:
+        dense = [T[a] if isinstance(T, np.ndarray) else T[a].toarray() for a in range(A)]
+        systems = (np.eye(S) - gamma * T_a for T_a in dense)
+        return np.stack([np.linalg.solve(M, R[:, a]) for a, M in enumerate(systems)])
+    V = np.repeat(R.min(axis=0)[:, np.newaxis] / (1 - gamma), S, axis=1)
+    sweeps = MOST_WORK / sum(sparse.csr_array(T_a).nnz for T_a in T)
+    enough, change = ENOUGH * np.abs(R).max() * (1 - gamma), np.inf
+    while change > enough and sweeps > 0:
+        before, sweeps = V, sweeps - 1
+        V = np.maximum(R.T + gamma * np.stack([T[a] @ V[a] for a in range(A)]), before)
+        change = (V - before).max()
+    return V
 
 
 def fast_informed_bound(pomdp: POMDP) -> Floats:
@@ -362,7 +483,8 @@ def fast_informed_bound(pomdp: POMDP) -> Floats:
     -----
     The bound pretends that after each step the best action can be chosen for the state before the
     step and the observation. It is tighter than the values of the MDP (QMDP), where the state
-    itself is seen. The iteration comes down from above, so it is a bound wherever it stops.
+    itself is seen. The iteration comes down from above, so it is a bound wherever it stops. In a
+    large model it stops early.
 
     References
     ----------
@@ -376,102 +498,23 @@ def fast_informed_bound(pomdp: POMDP) -> Floats:
     array([[2., 1.],
            [1., 2.]])
     """
-    T, O, gamma = pomdp.T, pomdp.O, pomdp.gamma  # noqa: E741
-    top = pomdp.R.max() / (1 - gamma)
-    vectors: Floats = np.full((pomdp.n_actions, pomdp.n_states), top)
-    enough = 1e-10 * np.abs(pomdp.R).max()
-    while True:
-        before = vectors
-        ahead = [
-            sum((T[a] @ (O[a, :, z, np.newaxis] * before.T)).max(axis=1) for z in range(O.shape[2]))
-            for a in range(pomdp.n_actions)
-        ]
-        vectors = np.minimum(pomdp.R.T + gamma * np.array(ahead), before)
-        if (before - vectors).max() <= enough * (1 - gamma):
-            return vectors
-
-
-@kernel
-def _lower(beliefs, alphas, bounds, best):
-    """Set bounds[i] = max_k b . alphas[k] for row b = beliefs[i], and best[i] to the first k."""
-    support = np.empty(beliefs.shape[1], dtype=np.int64)
-    for i in range(len(beliefs)):
-        n = 0
-        for s in range(beliefs.shape[1]):
-            if beliefs[i, s] > 0:
-                support[n] = s
-                n += 1
-        bounds[i], best[i] = -np.inf, 0
-        for k in range(len(alphas)):
-            value = 0.0
-            for j in range(n):
-                value += beliefs[i, support[j]] * alphas[k, support[j]]
-            if value > bounds[i]:
-                bounds[i], best[i] = value, k
-
-
-@kernel
-def _upper(beliefs, corners, points, below, vectors, bounds):
-    """Fill in the upper bound at each row b of `beliefs`; it is the lowest of three.
-
-    The plane through the corners; that plane minus the sawtooth of a point; and the fast informed
-    bound. below[i] <= 0 is how far point p_i lies below the plane. With r = min_s b(s) / p_i(s), b
-    is r p_i plus a rest, and because V* is convex, the bound at b is lower by r below[i] at least.
-    A row may sum to less than 1; its bound is in proportion.
-    """
-    n_states = len(corners)
-    for k in range(len(beliefs)):
-        mass, flat, deepest = 0.0, 0.0, 0.0
-        for s in range(n_states):
-            mass += beliefs[k, s]
-            flat += beliefs[k, s] * corners[s]
-        for i in range(len(points)):
-            if mass * below[i] >= deepest:
-                continue
-            r = mass
-            for s in range(n_states):
-                if beliefs[k, s] < r * points[i, s]:
-                    r = beliefs[k, s] / points[i, s]
-                    if r * below[i] >= deepest:
-                        break
-            deepest = min(deepest, r * below[i])
-        informed = -np.inf
-        for a in range(len(vectors)):
-            value = 0.0
-            for s in range(n_states):
-                value += beliefs[k, s] * vectors[a, s]
-            informed = max(informed, value)
-        bounds[k] = min(flat + deepest, informed)
-
-
-@kernel
-def _dominated(alphas, by):
-    """Set by[i] = j for each row i that is nowhere above another row j; by[i] = i before."""
-    for i in range(len(alphas)):
-        for j in range(len(alphas)):
-            if i == j or by[j] != j:
-                continue
-            s = 0
-            while s < alphas.shape[1] and alphas[i, s] <= alphas[j, s]:
-                s += 1
-            if s == alphas.shape[1]:
-                by[i] = j
-                break
-
-
-@kernel
-def _needed(points, below):
-    """Return which points are below the sawtooth of all others."""
-    needed = np.ones(len(points), dtype=np.bool_)
-    for i in range(len(points)):
-        for j in range(len(points)):
-            if i == j or not needed[j] or below[j] > below[i]:
-                continue
-            r = 1.0
-            for s in range(points.shape[1]):
-                if points[i, s] < r * points[j, s]:
-                    r = points[i, s] / points[j, s]
-            if r * below[j] <= below[i]:
-                needed[i] = False
-                break
-    return needed
+    R, gamma, S = pomdp.R, pomdp.gamma, pomdp.n_states
+    # Pr(s', z | s, a) for each action: rows (z, s), without those that cannot happen.
+    steps = []
+    for a in range(pomdp.n_actions):
+        T, O = sparse.csr_array(pomdp.T[a]), sparse.csc_array(pomdp.O[a])  # noqa: E741
+        parts = [T * O[:, [z]].toarray()[:, 0] for z in range(pomdp.n_observations)]
+        both = sparse.csr_array(sparse.vstack(parts))
+        both.eliminate_zeros()
+        possible = np.flatnonzero(np.diff(both.indptr))
+        steps.append((both[possible], possible % S))
+    V: Floats = np.full((pomdp.n_actions, S), R.max() / (1 - gamma))
+    sweeps = MOST_WORK / sum(both.nnz * len(V) for both, _ in steps)
+    enough, change = ENOUGH * np.abs(R).max() * (1 - gamma), np.inf
+    while change > enough and sweeps > 0:
+        before, sweeps = V, sweeps - 1
+        # For each s and z the best vector; then the sum over z.
+        later = [np.bincount(s, (both @ V.T).max(axis=1), S) for both, s in steps]
+        V = np.minimum(R.T + gamma * np.array(later), before)
+        change = (before - V).max()
+    return V

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 
 from arkaq_edu.mdp import policy_iteration
 from arkaq_edu.pomdp import POMDP, belief_update, problem, solve_point_based, solve_pomdp
-from arkaq_edu.pomdp.point_based import _Lower, fast_informed_bound
+from arkaq_edu.pomdp.point_based import _Growing, _Lower, fast_informed_bound
 
 
 @st.composite
@@ -145,11 +145,13 @@ def test_the_upper_bound_is_nowhere_above_the_informed_one(pomdp):
 
 def test_a_plan_goes_on_with_what_dominates_its_dominator():
     lower = _Lower(POMDP([np.eye(2)], np.ones((1, 2, 1)), [[0.0], [0.0]], 0.9))
-    lower.alphas = np.array([[0.0, 0], [1, 1], [5, 0], [2, 2]])
-    lower.actions, lower.branches = np.zeros(4, int), np.array([[0], [1], [0], [1]])
+    lower.alphas = _Growing(np.array([[0.0, 0], [1, 1], [5, 0], [2, 2]]))
+    lower.actions = _Growing(np.zeros(4, int))
+    lower.branches = _Growing(np.array([[0], [1], [0], [1]]))
+    lower.limit = 3
     lower.tidy()
-    assert lower.alphas.tolist() == [[5, 0], [2, 2]]
-    assert lower.branches.tolist() == [[1], [1]]
+    assert lower.alphas.filled.tolist() == [[5, 0], [2, 2]]
+    assert lower.branches.filled.tolist() == [[1], [1]]
 
 
 def test_the_same_model_gives_the_same_bytes():
