@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._checks import integers
+from arkaq_edu._checks import affordable, integers
 from arkaq_edu._compiled import kernel
 from arkaq_edu.pomdp.model import POMDP
 
@@ -41,6 +41,9 @@ def follow(steps, rewards, actions, branches, enough, most, values):
 
 def steps_and_rewards(pomdp: POMDP) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
     """Return gamma T(s, a, t) O(t, a, z) at [a, z, s, t], and R(s, a) at [a, s]."""
+    A, S, Z = pomdp.n_actions, pomdp.n_states, pomdp.n_observations
+    affordable("the steps of pomdp", (A, Z, S, S))
+    pomdp = pomdp.dense()
     seen = pomdp.O.transpose(0, 2, 1)[:, :, np.newaxis]
     return pomdp.gamma * pomdp.T[:, np.newaxis] * seen, np.ascontiguousarray(pomdp.R.T)
 
@@ -145,8 +148,10 @@ class PolicyGraph:
         Raises
         ------
         ValueError
-            If the model lacks actions or observations of the graph.
+            If the model lacks actions or observations of the graph, or its discount is 1.
         """
+        if pomdp.gamma == 1:
+            raise ValueError("pomdp must have a discount below 1, for a graph has no end")
         integers("actions", self.actions, 0, pomdp.n_actions - 1)
         K, Z = self.branches.shape
         if pomdp.n_observations != Z:

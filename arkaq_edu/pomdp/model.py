@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._checks import array, generator, shown, transitions
+from arkaq_edu._checks import affordable, array, generator, shown, transitions
+from arkaq_edu._frozen import Frozen
 from arkaq_edu.mdp.model import MDP
 
 
-class POMDP:
+class POMDP(Frozen):
     """A POMDP <S, A, T, R, Omega, O> with a discount rate.
 
     Parameters
@@ -34,7 +35,7 @@ class POMDP:
     ----------
     mdp : MDP
         The same world without the observations: its state is seen.
-    T, O : ndarray, or list of scipy.sparse.csr_array
+    T, O : ndarray, or tuple of scipy.sparse.csr_array
         As given, each row divided by its sum, and read-only.
     R, start : ndarray
         As given, and read-only.
@@ -86,7 +87,7 @@ class POMDP:
     ) -> None:
         self.mdp = MDP(T, array("R", R, (None, None)), gamma, start)
         self.R, self.start = self.mdp.R, self.mdp.start
-        self.T: Any = self.mdp.T  # an array or a list: T[a] is the matrix of an action
+        self.T: Any = self.mdp.T  # an array or a tuple: T[a] is the matrix of an action
         self.gamma = self.mdp.gamma
         self.n_states, self.n_actions = self.mdp.n_states, self.mdp.n_actions
         self.O: Any = transitions("O", O, (self.n_actions, self.n_states, None))
@@ -94,19 +95,7 @@ class POMDP:
         self.states = _names("states", states, self.n_states)
         self.actions = _names("actions", actions, self.n_actions)
         self.observations = _names("observations", observations, self.n_observations)
-        self.__setstate__({})
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        """Protect the tables of a new model, and of a copy, against changes."""
-        self.__dict__.update(state)
-        for table in (self.O,) if isinstance(self.O, np.ndarray) else self.O:
-            arrays = (
-                (table,)
-                if isinstance(table, np.ndarray)
-                else (table.data, table.indices, table.indptr)
-            )
-            for fixed in arrays:
-                fixed.setflags(write=False)
+        self.freeze()
 
     def __repr__(self) -> str:
         counts = [
@@ -118,6 +107,38 @@ class POMDP:
             )
         ]
         return f"POMDP({', '.join(counts)}, gamma={self.gamma:g})"
+
+    def dense(self) -> POMDP:
+        """Return the same model with arrays for T and O, for what needs all their entries.
+
+        Returns
+        -------
+        POMDP
+            The model itself, if its tables are arrays.
+
+        Raises
+        ------
+        ValueError
+            If the tables would not fit into memory.
+
+        Examples
+        --------
+        >>> from scipy.sparse import eye_array
+        >>> pomdp = POMDP([eye_array(2)], [[[1], [1]]], [[0], [0]], gamma=0.9)
+        >>> pomdp.dense().T
+        array([[[1., 0.],
+                [0., 1.]]])
+        """
+        if isinstance(self.T, np.ndarray) and isinstance(self.O, np.ndarray):
+            return self
+        A, S, Z = self.n_actions, self.n_states, self.n_observations
+        affordable("the dense tables of pomdp", (A, S, S + Z))
+        T, O = (  # noqa: E741
+            table if isinstance(table, np.ndarray) else [M.toarray() for M in table]
+            for table in (self.T, self.O)
+        )
+        names = {"states": self.states, "actions": self.actions, "observations": self.observations}
+        return POMDP(T, O, self.R, self.gamma, self.start, **names)  # type: ignore[arg-type]
 
     def step(
         self, s: ArrayLike, a: ArrayLike, rng: np.random.Generator | int

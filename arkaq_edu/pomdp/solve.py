@@ -8,8 +8,9 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
+from tqdm.auto import tqdm
 
-from arkaq_edu._checks import integer, number
+from arkaq_edu._checks import integer, number, shown
 from arkaq_edu.pomdp.backup import Backup, backup, point_backup
 from arkaq_edu.pomdp.files import problem
 from arkaq_edu.pomdp.graph import PolicyGraph, follow, settle, steps_and_rewards
@@ -41,6 +42,10 @@ AT_REST = 1 / 100
 TO_THE_MIDDLE = 1e-6
 
 
+# A longer horizon takes days, and its value functions more memory than there is.
+MOST_STEPS = 10**6
+
+
 def solve_pomdp(pomdp: POMDP, horizon: int | None = None, tol: float = 1e-6) -> ValueFunction:
     """Return the optimal value function over beliefs, exactly or to a certified tolerance.
 
@@ -64,7 +69,8 @@ def solve_pomdp(pomdp: POMDP, horizon: int | None = None, tol: float = 1e-6) -> 
     Raises
     ------
     ValueError
-        If `pomdp` is not a POMDP, `horizon` is not an integer >= 1 or `tol` is not above 0.
+        If `pomdp` is not a POMDP, `horizon` is not an integer from 1 to a million, `tol` is not
+        above 0, or the discount is 1 and there is no horizon.
 
     Notes
     -----
@@ -82,7 +88,7 @@ def solve_pomdp(pomdp: POMDP, horizon: int | None = None, tol: float = 1e-6) -> 
 
     The number of vectors depends on the problem and can grow without limit. Then
     `solve_point_based` gives bounds. The first call compiles the loops of pruning, which takes
-    some ten seconds, once.
+    some ten seconds, once. A progress bar shows after two seconds.
 
     References
     ----------
@@ -110,11 +116,16 @@ def solve_pomdp(pomdp: POMDP, horizon: int | None = None, tol: float = 1e-6) -> 
       1: 2
     """
     if not isinstance(pomdp, POMDP):
-        raise ValueError(f"pomdp must be a POMDP, got {pomdp!r}")
-    tol = number("tol", tol, 0, open_low=True)
-    if horizon is None:
-        return _endless(pomdp, tol)
-    return _finite(pomdp, integer("horizon", horizon, 1))
+        raise ValueError(f"pomdp must be a POMDP, got {shown(pomdp)}")
+    tol = number("tol", tol, 0, open_low=True, open_high=True)
+    if horizon is not None:
+        return _finite(pomdp.dense(), integer("horizon", horizon, 1, MOST_STEPS))
+    if pomdp.gamma == 1:
+        raise ValueError(
+            "horizon must be an integer >= 1, because gamma is 1: without an end the values are "
+            "not finite"
+        )
+    return _endless(pomdp.dense(), tol)
 
 
 @lru_cache(maxsize=32)
@@ -147,7 +158,7 @@ def _finite(pomdp: POMDP, horizon: int) -> ValueFunction:
     actions = np.sort(pairs[:, 0])
     branches = np.empty((len(actions), 0), np.int64)
     V = ValueFunction(alphas[actions], actions, branches, None, lost, 1)
-    for steps in range(2, horizon + 1):
+    for steps in tqdm(range(2, horizon + 1), "steps", delay=2, leave=False):
         step = backup(pomdp, V.alphas, 0.0, beliefs)
         beliefs = step.beliefs
         error = step.lost + pomdp.gamma * V.error
@@ -162,7 +173,9 @@ def _endless(pomdp: POMDP, tol: float) -> ValueFunction:
     alphas = np.linalg.solve(corners - gamma * pomdp.T, pomdp.R.T[:, :, np.newaxis])[:, :, 0]
     finest = PRUNING_SHARE * tol * (1 - gamma)
     residual, beliefs, share = float(np.ptp(pomdp.R)), corners, COARSE
+    bar = tqdm(desc="steps", unit="step", delay=2, leave=False)
     while True:
+        bar.update()
         allowed = max(share * residual, finest)
         step = backup(pomdp, alphas, allowed, beliefs)
         before = residual
@@ -170,6 +183,7 @@ def _endless(pomdp: POMDP, tol: float) -> ValueFunction:
         if residual > TOO_LITTLE * before:
             share /= 2
         error = (gamma * residual + step.lost) / (1 - gamma)
+        bar.set_postfix(error=f"{error:.2g}", refresh=False)
         rounding = max(step.lost, ROUNDING * np.abs(alphas).max())
         if error <= tol or rounding > max(ROUNDED_UP * allowed, residual, 2 * finest):
             break
@@ -179,6 +193,7 @@ def _endless(pomdp: POMDP, tol: float) -> ValueFunction:
         zero = np.zeros((1, pomdp.n_states))
         pairs, _, _ = needed_sums(both, zero, allowed * FINER, beliefs)
         alphas = both[np.sort(pairs[:, 0])]
+    bar.close()
     V = _close(pomdp, step, alphas, 0.0 if residual < AT_REST * finest else finest)
     if V.error > max(tol, error):
         V = ValueFunction(step.alphas, step.actions, step.branches[:, :0], None, error)
@@ -252,7 +267,7 @@ def bellman_error(
     Raises
     ------
     ValueError
-        If `V` is over another number of states.
+        If `V` is over another number of states, or `tol` is negative or infinite.
 
     Notes
     -----
@@ -270,5 +285,6 @@ def bellman_error(
     n_states = V.alphas.shape[1]
     if n_states != pomdp.n_states:
         raise ValueError(f"V must be over {pomdp.n_states} states, got one over {n_states}")
-    step = backup(pomdp, V.alphas, tol, beliefs)
+    tol = number("tol", tol, 0, open_high=True)
+    step = backup(pomdp.dense(), V.alphas, tol, beliefs)
     return distance(step.alphas, V.alphas)[0] + step.lost

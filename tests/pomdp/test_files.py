@@ -4,7 +4,6 @@ import itertools
 import pickle
 import random
 import re
-import time
 import tracemalloc
 from pathlib import Path
 
@@ -14,7 +13,7 @@ import pytest
 from hypothesis import given, settings
 
 from arkaq_edu._paths import course_folder
-from arkaq_edu.pomdp import POMDP, PomdpFormatError, problem, read_pomdp, write_pomdp
+from arkaq_edu.pomdp import POMDP, PomdpFormatError, belief_update, problem, read_pomdp, write_pomdp
 
 OWN = sorted((course_folder() / "data" / "pomdp").glob("*.pomdp"))
 
@@ -211,7 +210,6 @@ def test_every_form_of_entry(tmp_path_factory, written):
         (MODEL.replace("a b", "0"), 3, 9, "a count of states from 1 to 65536, got '0'"),
         (MODEL.replace("a b", "uniform"), 3, 9, "or their names, none of them a word of the"),
         (MODEL.replace("a b", "9" * 5000), 3, 9, "a count of states from 1 to 65536, got '99"),
-        (MODEL.replace("a b", "5000"), 8, 1, "T must be"),
         (MODEL.replace("observations: x y z\n", ""), 6, 1, "without 'observations:', got 'O'"),
         (PREAMBLE + "start: 0.5 0.6\n" + "T: * identity", 6, 8, "those of 'start' sum to 1.1"),
         (PREAMBLE + "start: 0.5\n" + "T: * identity", 7, 1, "(1 of 2 are given), got 'T'"),
@@ -257,18 +255,18 @@ def test_what_is_refused_and_where(read, tmp_path, text, line, column, said):
 @pytest.mark.parametrize(
     ("old", "new", "line", "column", "said"),
     [
-        ("a b", "L R", 3, 11, "none of them a word of the format (write another name, such as 'R_'), got 'R'"),
-        ("a b", "T O", 3, 9, "none of them a word of the format (write another name, such as 'T_'), got 'T'"),
+        ("a b", "L R", 3, 11, "(write another name, such as 'R_'), got 'R'"),
+        ("a b", "T O", 3, 9, "(write another name, such as 'T_'), got 'T'"),
         ("go stay", "go reset", 4, 13, "a count of actions or their names, none of them a word"),
-        ("a b", "room.1 room.2", 3, 9, "letters, digits, '_' and '-' (such as 'room_1'), got 'room.1'"),
-        ("a b", "a 2b", 3, 11, "made of a letter, then letters, digits, '_' and '-' (such as 's2b'), got '2b'"),
+        ("a b", "room.1 room.2", 3, 9, "'_' and '-' (such as 'room_1'), got 'room.1'"),
+        ("a b", "a 2b", 3, 11, "made of a letter, then letters, digits"),
         ("a b", "a 7", 3, 11, "(such as 's7'), got '7'"),
         ("a b", "2 5", 3, 11, "a count of states or their names, not both, got '5'"),
         ("a b", "2 a", 3, 11, "a count of states or their names, not both, got 'a'"),
         ("values: reward", "costs: 1", 2, 1, "R); write 'values: cost' instead, got 'costs'"),
         ("values: reward", "rewards: 1", 2, 1, "write 'values: reward' before the names"),
         ("values: reward", "value: reward", 2, 1, "write 'values:' instead, got 'value'"),
-        ("values: reward", "values: rewards", 2, 9, "(write 'reward' for 'rewards'), got 'rewards'"),
+        ("values: reward", "values: rewards", 2, 9, "(write 'reward' for 'rewards')"),
         ("values: reward", "values: costs", 2, 9, "(write 'cost' for 'costs'), got 'costs'"),
         ("discount", "gamma", 1, 1, "write 'discount:' instead, got 'gamma'"),
         ("go stay", "go stay\nhorizon: 3", 5, 1, "observations, start, T, O, R), got 'horizon'"),
@@ -311,11 +309,43 @@ def test_a_probability_that_rounding_left_above_one(read):
 def test_what_a_line_costs_counts_and_not_its_length(read, line):
     text = "discount: 0.5\nvalues: reward\nstates: 4000\nactions: 2\nobservations: x y\n"
     text += "T: * identity\nO: * uniform\n" + f"{line}\n" * 3000
-    start = time.perf_counter()
     said = rf"line \d+, .* entries of {line[0]} that set at most 16777216 numbers in all; with"
     with pytest.raises(PomdpFormatError, match=said):
         read(text)
-    assert time.perf_counter() - start < 60  # it took many minutes
+
+
+def test_a_large_file_is_read_without_a_dense_table(read, tmp_path):
+    n = 3000  # a ring: go leads one state on, with a slip; only the first state looks different
+    text = f"discount: 0.95\nvalues: reward\nstates: {n}\nactions: go stay\n"
+    text += "observations: x y\nstart: 0\nO: * : * : x 1\nO: * : 0\n0.3 0.7\nT: stay identity\n"
+    text += "".join(f"T: go : {s} : {s} 0.25\nT: go : {s} : {(s + 1) % n} 0.75\n" for s in range(n))
+    text += "R: go : * : 7 : * 8\nR: go : 0 : 0 : y 20\nR: * : 5 : * : * -1\n"
+    tracemalloc.start()
+    pomdp = read(text)
+    assert tracemalloc.get_traced_memory()[1] < 30e6  # a dense T takes 144 MB
+    tracemalloc.stop()
+    go, stay = pomdp.T
+    assert (go.nnz, stay.nnz) == (2 * n, n)
+    assert (go[5, 6], go[5, 5], go[5, 7]) == (0.75, 0.25, 0)
+    np.testing.assert_array_equal(pomdp.O[0][:2], [[0.3, 0.7], [1, 0]])
+    expected = np.zeros((n, 2))
+    expected[[6, 7, 0], 0] = 6, 2, 0.25 * 0.7 * 20
+    expected[5] = -1
+    np.testing.assert_allclose(pomdp.R, expected, atol=1e-15)
+    write_pomdp(pomdp, tmp_path / "again.pomdp")
+    again = read_pomdp(tmp_path / "again.pomdp")
+    np.testing.assert_array_equal(again.R, pomdp.R)
+    for one, other in zip(again.T, pomdp.T, strict=True):
+        assert (one != other).nnz == 0
+    b = belief_update(again, again.start, 0, 1)
+    assert np.flatnonzero(b).tolist() == [0]
+
+
+def test_an_mdp_of_many_states_is_seen_through_sparse_eyes(read):
+    n = 2000
+    pomdp = read(f"discount: 0.9 values: reward states: {n} actions: 1 T: 0 identity")
+    assert (pomdp.O[0] != pomdp.T[0]).nnz == 0
+    assert pomdp.n_observations == n
 
 
 def test_rewards_of_steps_and_observations_that_cannot_happen_do_not_count(read):
@@ -340,7 +370,7 @@ def test_what_does_not_fit_is_refused_before_it_takes_memory(read, counts):
     n_states, n_actions, n_observations = counts
     text = f"discount: 0\nvalues: cost\nstates: {n_states}\nactions: {n_actions}\n"
     tracemalloc.start()
-    with pytest.raises(PomdpFormatError, match="at most 16777216 (rows|numbers)"):
+    with pytest.raises(PomdpFormatError, match=r"at most 16777216 (rows|numbers)"):
         read(text + f"observations: {n_observations}\nT: * uniform\nO: * uniform\n")
     assert tracemalloc.get_traced_memory()[1] < 60e6
     tracemalloc.stop()

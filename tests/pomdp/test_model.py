@@ -8,6 +8,7 @@ import hypothesis.strategies as st
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
+from scipy import sparse
 
 from arkaq_edu.pomdp import (
     POMDP,
@@ -18,6 +19,7 @@ from arkaq_edu.pomdp import (
     expected_rewards,
     predict,
     problem,
+    solve_pomdp,
     successors,
     to_triangle,
 )
@@ -70,7 +72,7 @@ def test_a_model_cannot_be_written_to_nor_through(name):
         ({"O": "seen"}, "O must"),
         ({"R": [[1, 0]]}, "R must have shape"),
         ({"R": [[1, np.inf], [0, 2]]}, "R must hold finite numbers"),
-        ({"gamma": 1}, r"gamma must be a number in \[0, 1\), got 1"),
+        ({"gamma": 1.5}, r"gamma must be a number in \[0, 1\], got 1.5"),
         ({"gamma": np.nan}, "gamma must be"),
         ({"start": [0.5, 0.4]}, "start must sum to 1"),
         ({"start": [1]}, "start must have shape"),
@@ -253,6 +255,75 @@ def test_a_belief_or_an_action_that_is_none_is_refused(function):
     for z in (-1, 2, "hear-left"):
         with pytest.raises(ValueError, match=r"z must be an integer in \[0, 1\]"):
             belief_update(tiger, [0.5, 0.5], 0, z)
+
+
+# Sparse tables
+
+
+def sparse_twin(pomdp, seed=0):
+    """The same model from sparse matrices of several formats."""
+    forms = (sparse.csr_array, sparse.csc_array, sparse.coo_array, sparse.csr_matrix)
+    T, O = (  # noqa: E741
+        [forms[(a + seed) % 4](matrix) for a, matrix in enumerate(table)]
+        for table in (pomdp.T, pomdp.O)
+    )
+    return POMDP(T, O, pomdp.R, pomdp.gamma, pomdp.start)
+
+
+@settings(max_examples=60, deadline=None)
+@given(look=looks(), seed=st.integers(0, 3))
+def test_a_sparse_model_gives_what_the_dense_one_does(look, seed):
+    pomdp, b, a, z = look
+    twin = sparse_twin(pomdp, seed)
+    assert repr(twin) == repr(pomdp)
+    for one, other in zip((*twin.T, *twin.O), (*pomdp.T, *pomdp.O), strict=True):
+        np.testing.assert_array_equal(one.toarray(), other)
+    np.testing.assert_allclose(predict(twin, b, a), predict(pomdp, b, a), atol=1e-14)
+    for one, other in zip(successors(twin, b, a), successors(pomdp, b, a), strict=True):
+        np.testing.assert_allclose(one, other, atol=1e-13)
+    if successors(pomdp, b, a).chances[z] > 0:
+        np.testing.assert_allclose(
+            belief_update(twin, b, a, z), belief_update(pomdp, b, a, z), atol=1e-13
+        )
+    s = np.arange(pomdp.n_states)
+    for one, other in zip(twin.step(s, a, 1), pomdp.step(s, a, 1), strict=True):
+        np.testing.assert_array_equal(one, other)
+    for name in ("T", "O", "R", "start"):
+        np.testing.assert_array_equal(getattr(twin.dense(), name), getattr(pomdp, name))
+    assert pomdp.dense() is pomdp
+
+
+def test_sparse_tables_are_checked_and_protected_like_dense_ones():
+    eye, seen = sparse.eye_array(2), np.ones((1, 2, 1))
+    for T, said in (
+        ([eye, sparse.eye_array(3)], "T must have shape"),
+        ([sparse.csr_array([[0.5, 0.6], [0, 1]])], r"T must sum to 1 .* got 1.1 at \(0, 0\)"),
+        ([sparse.csr_array([[2.0, -1], [0, 1]])], "T must hold probabilities >= 0, got -1"),
+        ([sparse.csr_array([[np.nan, 1], [0, 1]])], r"T\[0\] must hold finite numbers"),
+        ([sparse.csr_array((2, 2))], r"T must sum to 1 .* got 0 at \(0, 0\)"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            POMDP(T, seen, [[0], [0]], 0.9)
+    with pytest.raises(ValueError, match="O must have shape"):
+        POMDP([eye], [sparse.eye_array(3)], [[0], [0]], 0.9)
+    rounded = sparse.csr_array(np.float32([[0.1, 0.9], [0, 1.0000001]]))
+    pomdp = POMDP([rounded], seen, [[0], [0]], 0.9)
+    assert pomdp.mdp.ends.tolist() == [False, True]
+    for model in (pomdp, copy.deepcopy(pomdp), pickle.loads(pickle.dumps(pomdp))):
+        with pytest.raises(ValueError, match="read-only"):
+            model.T[0].data[0] = 1
+    rounded.data[:] = 7
+    assert pomdp.T[0].data.max() == 1
+
+
+def test_dense_tables_that_do_not_fit_are_not_made():
+    n = 30_000
+    pomdp = POMDP([sparse.eye_array(n)], np.ones((1, n, 1)), np.zeros((n, 1)), 0.9)
+    b = belief_update(pomdp, pomdp.start, 0, 0)
+    np.testing.assert_allclose(b, pomdp.start)
+    for solve in (pomdp.dense, lambda: solve_pomdp(pomdp, 1)):
+        with pytest.raises(ValueError, match="dense tables of pomdp must need at most"):
+            solve()
 
 
 # The thesis

@@ -4,10 +4,21 @@ import hypothesis.strategies as st
 import numpy as np
 import pytest
 from hypothesis import given, settings
+from scipy import sparse
 
 from arkaq_edu.mdp import policy_iteration
-from arkaq_edu.pomdp import POMDP, belief_update, problem, solve_point_based, solve_pomdp
+from arkaq_edu.pomdp import (
+    POMDP,
+    UpperBound,
+    belief_update,
+    point_kernels,
+    problem,
+    solve_point_based,
+    solve_pomdp,
+    successors,
+)
 from arkaq_edu.pomdp.point_based import _Growing, _Lower, fast_informed_bound
+from tests.pomdp.large import rock_sample_5_4, tag
 
 
 @st.composite
@@ -161,7 +172,96 @@ def test_the_same_model_gives_the_same_bytes():
     assert repr(one) == repr(other)
 
 
+def sawtooth(b, corners, points, values, vectors):
+    """The upper bound in plain NumPy, one point after the other."""
+    deepest = 0.0
+    for p, value in zip(points, values, strict=True):
+        inside = p > 0
+        r = (b[inside] / p[inside]).min()
+        deepest = min(deepest, r * (value - p @ corners))
+    return min(b @ corners + deepest, (vectors @ b).max())
+
+
+@settings(max_examples=30, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_the_compiled_bounds_are_the_plain_ones(seed):
+    rng = np.random.default_rng(seed)
+    S, N = int(rng.integers(1, 6)), int(rng.integers(0, 8))
+    beliefs, points = (rng.dirichlet(np.full(S, 0.2), size=n).round(2) for n in (6, N))
+    beliefs, points = (
+        (x + 1e-300 * (x.sum(axis=1, keepdims=True) == 0)) for x in (beliefs, points)
+    )
+    beliefs, points = (x / x.sum(axis=1, keepdims=True) for x in (beliefs, points))
+    corners, vectors = rng.normal(size=S) + 3, rng.normal(size=(2, S)) + 2
+    upper = UpperBound(corners, points, points @ corners - rng.random(N), vectors)
+    expected = [sawtooth(b, corners, points, upper.values, vectors) for b in beliefs]
+    np.testing.assert_allclose(upper(beliefs), expected, atol=1e-12)
+    assert upper(beliefs[0]) == upper(beliefs)[0]
+    rows = sparse.csr_array(beliefs)
+    bounds, best = point_kernels.lower((rows.indptr, rows.indices, rows.data), vectors)
+    np.testing.assert_allclose(bounds, (beliefs @ vectors.T).max(axis=1), atol=1e-12)
+    assert best.tolist() == (beliefs @ vectors.T).argmax(axis=1).tolist()
+
+
+def test_a_sparse_model_has_the_bounds_of_the_dense_one():
+    pomdp = corridor_of(12)
+    T, O = ([sparse.csr_array(M) for M in table] for table in (pomdp.T, pomdp.O))  # noqa: E741
+    twin = POMDP(T, O, pomdp.R, pomdp.gamma)
+    one, other = (solve_point_based(p, max_backups=100) for p in (pomdp, twin))
+    assert one.lower.alphas.tobytes() == other.lower.alphas.tobytes()
+    assert one.upper.values.tobytes() == other.upper.values.tobytes()
+
+
+def test_the_first_bounds_hold_wherever_their_iteration_stops(monkeypatch):
+    pomdp = corridor_of(12)
+    best = solve_point_based(pomdp, max_backups=200)
+    before = solve_point_based(pomdp, max_backups=0)
+    monkeypatch.setattr("arkaq_edu.pomdp.point_based.MOST_SOLVED", 0)
+    repeated = solve_point_based(pomdp, max_backups=0)
+    np.testing.assert_allclose(repeated.lower.alphas, before.lower.alphas, atol=1e-6)
+    assert (repeated.lower.alphas <= before.lower.alphas + 1e-12).all()
+    monkeypatch.setattr("arkaq_edu.pomdp.point_based.MOST_WORK", 1500)
+    early = solve_point_based(pomdp, max_backups=0)
+    beliefs = beliefs_of(pomdp, np.random.default_rng(0))
+    assert (early.lower.value(beliefs) <= best.lower.value(beliefs) + 1e-9).all()
+    assert (early.upper(beliefs) >= best.upper(beliefs) - 1e-9).all()
+    assert early.gap > before.gap
+
+
+def test_the_time_ends_the_search():
+    pomdp = corridor_of(40)
+    blind = solve_point_based(pomdp, seconds=0)
+    assert blind.backups == 0
+    found = solve_point_based(pomdp, tol=1e-9, max_backups=10**9, seconds=0.5)
+    assert 0 < found.backups < 10**6
+    beliefs = beliefs_of(pomdp, np.random.default_rng(0))
+    assert (found.lower.value(beliefs) <= found.upper(beliefs) + 1e-9).all()
+    assert found.gap <= blind.gap
+    for seconds in (-1, np.inf, "1"):
+        with pytest.raises(ValueError, match="seconds must be"):
+            solve_point_based(pomdp, seconds=seconds)
+
+
+def test_tag_and_rock_sample():
+    """Bounds at the start that hold the values of the literature: about -6 and 17 to 18."""
+    for pomdp, states, low, high in ((tag(), 870, -19, 0), (rock_sample_5_4(), 401, 12, 21)):
+        assert pomdp.n_states == states and isinstance(pomdp.T, tuple)
+        found = solve_point_based(pomdp, max_backups=60)
+        assert low < found.lower.value(pomdp.start) < found.upper(pomdp.start) < high
+        b = pomdp.start
+        for _ in range(10):  # the vectors bound what their actions earn from where they lead
+            a = found.lower.action(b)
+            chances, beliefs = successors(pomdp, b, a)
+            can = chances > 0
+            assert found.lower.value(b) <= 1e-9 + b @ pomdp.R[:, a] + pomdp.gamma * (
+                chances[can] @ found.lower.value(beliefs[can])
+            )
+            b = beliefs[chances.argmax()]
+
+
 def test_what_is_refused():
+    with pytest.raises(ValueError, match="pomdp must be a POMDP, got 'tiger'"):
+        solve_point_based("tiger")
     tiger = problem("tiger")
     for tol in (0, -1, np.nan, "small"):
         with pytest.raises(ValueError, match="tol must be"):

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy import sparse
 
 import arkaq_edu
 from arkaq_edu.mdp import policy_iteration
@@ -19,6 +20,7 @@ from arkaq_edu.pomdp import (
     all_trees,
     bellman_error,
     problem,
+    solve_point_based,
     solve_pomdp,
     successors,
     tree_value,
@@ -253,10 +255,46 @@ def test_it_runs_without_numba_and_gives_the_same():
     assert plain.stdout.strip() == f"{compiled[0]} {compiled[1]}"
 
 
+@settings(max_examples=30, deadline=None)
+@given(seeds, st.integers(1, 3))
+def test_without_a_discount_a_horizon_earns_the_plain_sum(seed, horizon):
+    some = random_pomdp(seed, 3, 2, 2)
+    pomdp = POMDP(some.T, some.O, some.R, 1)
+    V = solve_pomdp(pomdp, horizon)
+    every = np.array([tree_value(pomdp, tree) for tree in all_trees(pomdp, horizon)])
+    b = random_beliefs(pomdp.n_states, seed)
+    np.testing.assert_allclose(V.value(b), (b @ every.T).max(axis=1), atol=1e-9)
+    assert V.error <= 1e-9
+
+
+def test_without_a_discount_and_without_an_end_there_is_no_value():
+    some = random_pomdp(0)
+    pomdp = POMDP(some.T, some.O, some.R, 1)
+    with pytest.raises(ValueError, match="horizon must be an integer >= 1, because gamma is 1"):
+        solve_pomdp(pomdp)
+    with pytest.raises(ValueError, match="pomdp must have a discount below 1"):
+        solve_point_based(pomdp)
+    with pytest.raises(ValueError, match="pomdp must have a discount below 1"):
+        PolicyGraph([0], [[0] * pomdp.n_observations]).values(pomdp)
+    for horizon in (10**9, 10**30):
+        with pytest.raises(ValueError, match=r"horizon must be an integer in \[1, 1000000\]"):
+            solve_pomdp(pomdp, horizon)
+
+
+def test_a_sparse_model_is_solved_like_a_dense_one():
+    tiger = problem("tiger")
+    T, O = ([sparse.csr_array(M) for M in table] for table in (tiger.T, tiger.O))  # noqa: E741
+    twin = POMDP(T, O, tiger.R, tiger.gamma)
+    V = solve_pomdp(twin)
+    assert V.alphas.tobytes() == solve_pomdp(tiger).alphas.tobytes()
+    np.testing.assert_array_equal(V.graph.values(twin), V.graph.values(tiger))
+    assert bellman_error(twin, V) == bellman_error(tiger, V)
+
+
 def test_bad_input_is_refused():
     assert arkaq_edu.solve_pomdp is solve_pomdp
     pomdp = problem("tiger")
-    with pytest.raises(ValueError, match="horizon must be an integer >= 1, got 0"):
+    with pytest.raises(ValueError, match=r"horizon must be an integer in \[1, 1000000\], got 0"):
         solve_pomdp(pomdp, 0)
     with pytest.raises(ValueError, match="tol must be"):
         solve_pomdp(pomdp, tol=0)
