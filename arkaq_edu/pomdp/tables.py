@@ -139,8 +139,14 @@ def expected_rewards(
     on_next = any(not _all(key, 2) for key, _, _ in entries)
     on_seen = any(len(key) + np.ndim(block) == 4 and not _all(key, 3) for key, block, _ in entries)
     R = np.zeros((S, len(T)))
-    for a in range(len(T)):
-        here = [entry for entry in entries if isinstance(entry.key[0], slice) or entry.key[0] == a]
+    entries_of: list[list[Reward]] = [[] for _ in T]
+    for entry in entries:
+        a = entry.key[0]
+        chosen = entries_of if _all(entry.key, 0) else entries_of[a : a + 1]
+        charge(len(chosen), entry.at)
+        for of_action in chosen:
+            of_action.append(entry)
+    for a, here in enumerate(entries_of):
         if not on_next and not on_seen:
             for key, value, at in here:
                 charge(S if isinstance(key[1], slice) else 1, at)
