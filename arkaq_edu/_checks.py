@@ -191,31 +191,45 @@ def _entry(entry: Any) -> float:
     return math.nan if missing else float(entry)
 
 
-def covariance(name: str, value: ArrayLike, n: int) -> NDArray[np.float64]:
-    """Return `value` as a symmetric positive semi-definite (n, n) matrix.
+def covariance(
+    name: str, value: ArrayLike, n: int, *, stack: bool = False
+) -> NDArray[np.float64]:
+    """Return `value` as a symmetric positive semi-definite (n, n) matrix, or a stack (T, n, n).
 
     Examples
     --------
     >>> covariance("R", [[1.0, 0.0], [0.0, -4.0]], 2)
     Traceback (most recent call last):
     ValueError: R must be a covariance (positive semi-definite), got an eigenvalue of -4
+    >>> covariance("R", [[[1.0]], [[-4.0]]], 1, stack=True)
+    Traceback (most recent call last):
+    ValueError: R must be a covariance (positive semi-definite), got an eigenvalue of -4 in row 1
     """
-    x = array(name, value, (n, n))
-    variances = x.diagonal().tolist()
-    if min(variances, default=0.0) >= 0 and np.count_nonzero(x) == n - variances.count(0.0):
+    x = array(name, value, (None, n, n) if stack else (n, n))
+    if x.size == 0:
+        return x
+    variances = x.diagonal(axis1=-2, axis2=-1)
+    if variances.min() >= 0 and np.count_nonzero(x) == np.count_nonzero(variances):
         return x  # a diagonal shows its eigenvalues
-    scale = max(float(np.abs(x).max(initial=0.0)), np.finfo(float).tiny)
-    if not np.allclose(x, x.T, rtol=0, atol=1e-9 * scale):
-        i, j = (int(k) for k in np.unravel_index(np.abs(x - x.T).argmax(), x.shape))
+    transposed = x.swapaxes(-2, -1)
+    scale = np.maximum(np.abs(x).max(axis=(-2, -1)), np.finfo(float).tiny)
+    gaps = np.abs(x - transposed)
+    uneven = gaps.max(axis=(-2, -1)) > 1e-9 * scale
+    if uneven.any():
+        row = int(np.argmax(uneven)) if stack else ()
+        i, j = (int(k) for k in np.unravel_index(gaps[row].argmax(), (n, n)))
         raise ValueError(
-            f"{name} must be a covariance (symmetric), got {x[i, j]:g} at ({i}, {j}) "
-            f"and {x[j, i]:g} at ({j}, {i})"
+            f"{name} must be a covariance (symmetric), got {x[row][i, j]:g} at ({i}, {j}) "
+            f"and {x[row][j, i]:g} at ({j}, {i}){f' in row {row}' if stack else ''}"
         )
-    x = (x + x.T) / 2
-    lowest = float(np.linalg.eigvalsh(x).min()) if n else 0.0
-    if lowest < -1e-9 * scale:
+    x = (x + transposed) / 2
+    lowest = np.linalg.eigvalsh(x)[..., 0]
+    negative = lowest < -1e-9 * scale
+    if negative.any():
+        row = int(np.argmax(negative)) if stack else ()
         raise ValueError(
-            f"{name} must be a covariance (positive semi-definite), got an eigenvalue of {lowest:g}"
+            f"{name} must be a covariance (positive semi-definite), got an eigenvalue of "
+            f"{lowest[row]:g}{f' in row {row}' if stack else ''}"
         )
     return x
 

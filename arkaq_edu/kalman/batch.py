@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu._checks import array
 from arkaq_edu.kalman import compiled
-from arkaq_edu.kalman.filter import KalmanFilter
+from arkaq_edu.kalman.filter import KalmanFilter, check_growth
 
 # Tracks filtered side by side: enough to keep the processor's vectors full, and few enough that
 # their covariances stay in its cache.
@@ -31,9 +31,10 @@ def kalman_batch(
     Parameters
     ----------
     A, H, Q, R, x0, P0 : array_like
-        The system and the start of every track, as for `KalmanFilter`.
+        The system and the start of every track, as for `KalmanFilter`. If A, H, Q or R changes
+        along the tracks, these are filtered one after the other.
     Z : array_like, shape (N, T, m)
-        Sightings; NaN where an entry is missing.
+        Sightings; NaN or masked where an entry is missing.
 
     Returns
     -------
@@ -43,7 +44,7 @@ def kalman_batch(
     Raises
     ------
     ValueError
-        As for `KalmanFilter`, and if Z has the wrong shape or is infinite.
+        As for `KalmanFilter`, if Z has the wrong shape or is infinite, or if a track diverges.
 
     References
     ----------
@@ -57,20 +58,25 @@ def kalman_batch(
            [0.        , 1.        ]])
     """
     kf = KalmanFilter(A, H, Q, R, x0=x0, P0=P0)
-    m, n = kf.H.shape
+    m, n = kf.H.shape[-2:]
     Z = array("Z", Z, (None, None, m), allow_nan=True)
+    x = np.empty((*Z.shape[:2], n))
+    model = [np.array(values) for values in (kf.A, kf.H, kf.Q, kf.R, kf.x0, kf.P0)]
+    constant = all(M.ndim == 2 for M in model[:4])
     groups: dict[bytes, list[int]] = {}
     for i, missing in enumerate(np.isnan(Z)):
         groups.setdefault(missing.tobytes(), []).append(i)
     shared = [group for group in groups.values() if len(group) > 1]
     alone = [group[0] for group in groups.values() if len(group) == 1]
-    x = np.empty((*Z.shape[:2], n))
-    model = [np.array(values) for values in (kf.A, kf.H, kf.Q, kf.R, kf.x0, kf.P0)]
     for tracks in [*shared, alone]:
         for start in range(0, len(tracks), BLOCK):
             block = tracks[start : start + BLOCK]
             found = np.empty((Z.shape[1], n, len(block)))
             side_by_side = np.ascontiguousarray(np.moveaxis(Z[block], 0, 2))
-            compiled.batch(*model, side_by_side, found, len(block) if tracks is alone else 1)
-            x[block] = np.moveaxis(found, 2, 0)
+            L = len(block) if tracks is alone else 1
+            if constant and compiled.batch(*model, side_by_side, found, L):
+                x[block] = np.moveaxis(found, 2, 0)
+            else:
+                x[block] = [kf.filter(Z[i]).x for i in block]
+    check_growth(x=x)
     return x

@@ -12,32 +12,48 @@ import math
 
 import numpy as np
 
+from arkaq_edu._checks import LARGEST
 from arkaq_edu._compiled import kernel
-from arkaq_edu.kalman.filter import measurement_update, time_update
-from arkaq_edu.kalman.matrices import NEGLIGIBLE, inverse, mul, quadratic, symmetric, transpose, vec
+from arkaq_edu.kalman.filter import gain, measurement_update, time_update
+from arkaq_edu.kalman.matrices import (
+    HALF_LOST,
+    NEGLIGIBLE,
+    inverse,
+    mul,
+    quadratic,
+    symmetric,
+    transpose,
+    vec,
+)
 
 ROUNDING = float(np.finfo(np.float64).eps)
 
 
 @kernel
+def row(stack, t):
+    """Return the entry for row t of a stack that has one for each row, or one for all."""
+    return stack[min(t, len(stack) - 1)]
+
+
+@kernel
 def track(
-    A, B, H, Q, Rs, gates, x0, P0, Z, U,
+    A, B, H, Q, R, gates, x0, P0, Z, U,
     x, P, x_prior, P_prior, innovation, S, K, nis, accepted,
 ):  # fmt: skip
     """Filter one track and fill in the rows of its trace; return its log-likelihood.
 
-    `Rs` and `U` have a row for each of Z, or one row for all.
+    A, B, H, Q, R and U have an entry for each row of Z, or one for all.
     """
     x_now, P_now, log_likelihood = x0, P0, 0.0
-    BU = mul(U, transpose(B))
+    constant = len(A) == len(B) == len(H) == len(Q) == len(R) == 1
+    BU = mul(U, transpose(B[0]))
     T, t = Z.shape[0], 0
     while t < T:
-        R, u = Rs[min(t, Rs.shape[0] - 1)], U[min(t, U.shape[0] - 1)]
-        x_now, P_now = time_update(A, B, Q, x_now, P_now, u)
+        x_now, P_now = time_update(row(A, t), row(B, t), row(Q, t), x_now, P_now, row(U, t))
         copy_vec(x_now, x_prior[t])
         copy(P_now, P_prior[t])
         x_now, P_now, K_now, y, S_now, nis[t], added, accepted[t] = measurement_update(
-            H, R, x_now, P_now, Z[t], gates
+            row(H, t), row(R, t), x_now, P_now, Z[t], gates
         )
         log_likelihood += added
         copy_vec(x_now, x[t])
@@ -46,12 +62,18 @@ def track(
         copy_vec(y, innovation[t])
         copy(S_now, S[t])
         t += 1
-        if t > 1 and Rs.shape[0] == 1 and converged(P_prior, accepted, innovation, t - 1):
-            S_inverse, used, log_det = inverse(S_now, np.ones(len(S_now), np.bool_))
+        if t > 1 and constant and converged(P_prior, accepted, innovation, t - 1):
+            P_last, H_last = P_prior[t - 1], H[0]
+            every = np.ones(len(S_now), np.bool_)
+            K_now, S_inverse, used, log_det = gain(
+                H_last, R[0], P_last, mul(H_last, P_last), S_now, every
+            )
             start = t
-            t = steady(A, H, K_now, S_inverse, gates[used], BU, Z, t, x, x_prior, innovation, nis)
+            t = steady(
+                A[0], H_last, K_now, S_inverse, gates[used], BU, Z, t, x, x_prior, innovation, nis
+            )
             for s in range(start, t):
-                copy(P_prior[start - 1], P_prior[s])
+                copy(P_last, P_prior[s])
                 copy(P_now, P[s])
                 copy(S_now, S[s])
                 copy(K_now, K[s])
@@ -68,7 +90,7 @@ def steady(A, H, K, S_inverse, gate, BU, Z, t, x, x_prior, innovation, nis):
     It fails where an entry is missing, so that the NIS is NaN, or where the gate refuses.
     """
     while t < Z.shape[0]:
-        plus(BU[min(t, BU.shape[0] - 1)], 1.0, A, x[t - 1], x_prior[t])  # eq 2.55
+        plus(row(BU, t), 1.0, A, x[t - 1], x_prior[t])  # eq 2.55
         plus(Z[t], -1.0, H, x_prior[t], innovation[t])
         nis[t] = quadratic(S_inverse, innovation[t])
         if not nis[t] <= gate:
@@ -119,11 +141,13 @@ def copy_vec(x, out):
 
 
 @kernel
-def smoothed(A, Q, x, P, x_prior, P_prior):
+def smoothed(As, Qs, x, P, x_prior, P_prior):
     """Smooth a filtered track in place, from its last row to its first."""
-    every, identity = np.ones(len(A), np.bool_), np.eye(len(A))
+    n = x.shape[1]
+    every, identity = np.ones(n, np.bool_), np.eye(n)
     for t in range(len(x) - 2, -1, -1):
-        P_prior_inverse, _, _ = inverse(P_prior[t + 1], every)
+        A, Q = row(As, t + 1), row(Qs, t + 1)  # of the step from row t to row t + 1
+        P_prior_inverse, _, _ = inverse(P_prior[t + 1], every, NEGLIGIBLE)
         C = mul(mul(P[t], transpose(A)), P_prior_inverse)  # C = P A' P_prior^-1
         copy_vec(x[t] + vec(C, x[t + 1] - x_prior[t + 1]), x[t])  # x += C (x_next - x_prior_next)
         # P += C (P_next - P_prior_next) C', in Joseph's form, which stays positive
@@ -233,17 +257,21 @@ def mirror(P):
 
 @kernel
 def inverse_each(S, seen, V):
-    """Set V to the inverse of the rows of S that are used, as `matrices.inverse` does."""
+    """Set V to the inverse of the rows of S that are seen, as `matrices.inverse` does.
+
+    Returns False if some row could not be used.
+    """
     m, _, L = S.shape
-    ratio = np.empty(L)
+    ratio, all_used = np.empty(L), True
     for i in range(m):
         for j in range(m):
             for c in range(L):
                 V[i, j, c] = S[i, j, c]
     for k in range(m):
         for c in range(L):
-            usable = seen[k, c] and V[k, k, c] > NEGLIGIBLE * S[k, k, c]
-            ratio[c] = 1.0 / V[k, k, c] if usable else 0.0
+            usable = V[k, k, c] > HALF_LOST * S[k, k, c]
+            ratio[c] = 1.0 / V[k, k, c] if seen[k, c] and usable else 0.0
+            all_used = all_used and (usable or not seen[k, c])
         for i in range(m):
             for j in range(m):
                 if i != k and j != k:
@@ -255,6 +283,17 @@ def inverse_each(S, seen, V):
                 V[k, i, c] *= ratio[c]
         for c in range(L):
             V[k, k, c] = ratio[c]
+    return all_used
+
+
+@kernel
+def bounded(P):
+    """Tell whether all variances are numbers that the package allows."""
+    largest = 0.0
+    for i in range(P.shape[0]):
+        for c in range(P.shape[2]):
+            largest = largest if P[i, i, c] <= largest else P[i, i, c]  # takes a NaN, too
+    return largest <= LARGEST
 
 
 @kernel
@@ -272,6 +311,8 @@ def batch(A, H, Q, R, x0, P0, Z, x, L):
     """Filter the N tracks of Z (T, m, N) into x (T, n, N).
 
     L = 1 if all tracks miss the same entries and so share their covariances, otherwise L = N.
+    Returns False where this plain arithmetic does not do: where `gain_by_rows` is needed, or where
+    a track diverges.
     """
     n, m, N = A.shape[0], H.shape[0], Z.shape[2]
     P, P_prior = np.empty((n, n, L)), np.empty((n, n, L))
@@ -296,7 +337,8 @@ def batch(A, H, Q, R, x0, P0, Z, x, L):
         mul_shared(H, P_prior, HP)
         mul_shared_transpose(HP, H, S)
         add(S, R)
-        inverse_each(S, seen, S_inverse)
+        if not (inverse_each(S, seen, S_inverse) and bounded(P_prior)):
+            return False
         transpose_each(HP, PH)
         mul_each(PH, S_inverse, K)  # eq 2.57: K = P H' (H P H' + R)^-1
         vec_each(K, y, Ky)
@@ -313,3 +355,4 @@ def batch(A, H, Q, R, x0, P0, Z, x, L):
         mul_each(PH, K_transpose, KHP)
         subtract(P, KHP, P)  # Joseph's form: P = P - (P H' - K R) K'
         mirror(P)
+    return True

@@ -6,7 +6,7 @@ are correct, it is chi-square distributed.
 
 from __future__ import annotations
 
-from arkaq_edu._checks import integer, number
+from arkaq_edu._checks import LARGEST, integer, number
 
 
 def chi_square_quantile(probability: float, dof: float) -> float:
@@ -28,7 +28,7 @@ def chi_square_band(dof: float, count: int = 1, probability: float = 0.95) -> tu
     Parameters
     ----------
     dof : float
-        Degrees of freedom of each NIS: the number of measurements seen, above 0.
+        Degrees of freedom of each NIS: the number of measurements seen, from 1e-100 to 1e100.
     count : int, default 1
         Number of values averaged, at least 1. The NIS along a track are independent.
     probability : float, default 0.95
@@ -58,7 +58,7 @@ def chi_square_band(dof: float, count: int = 1, probability: float = 0.95) -> tu
     [0.05, 7.38]
     [1.63, 2.41]
     """
-    dof = number("dof", dof, 0, open_low=True, open_high=True)
+    dof = number("dof", dof, 1 / LARGEST, LARGEST)
     count = integer("count", count, 1)
     probability = number("probability", probability, 0, 1, open_low=True, open_high=True)
     tail = (1 - probability) / 2

@@ -15,6 +15,8 @@ from arkaq_edu._compiled import kernel
 LOG_2PI = math.log(2 * math.pi)
 # If only this fraction of a variance is left once the rows before are known, it is rounding error.
 NEGLIGIBLE = 16 * float(np.finfo(np.float64).eps)
+# If less than this fraction is left, rounding has taken half of its digits.
+HALF_LOST = 1e-8
 
 
 @kernel
@@ -78,11 +80,30 @@ def without_missing(z):
 
 
 @kernel
-def inverse(S, seen):
+def outer(x, y):
+    """Return the outer product x y'."""
+    A = np.empty((len(x), len(y)))
+    for i in range(len(x)):
+        for j in range(len(y)):
+            A[i, j] = x[i] * y[j]
+    return A
+
+
+@kernel
+def first_beyond(values, limit):
+    """Return the index of the first value that is NaN or of a larger magnitude, or -1."""
+    for i in range(len(values)):
+        if not abs(values[i]) <= limit:
+            return i
+    return -1
+
+
+@kernel
+def inverse(S, seen, negligible):
     """Invert the rows and columns of a covariance that are used; return zeros elsewhere.
 
-    A row is used if it is `seen` and the used rows before it do not already determine it. So S may
-    be singular.
+    A row is used if it is `seen` and the used rows before it leave more than a `negligible`
+    fraction of its variance. So S may be singular.
 
     Returns
     -------
@@ -97,7 +118,7 @@ def inverse(S, seen):
     used, log_det = 0, 0.0
     for k in range(m):  # Gauss-Jordan elimination; V[k, k] is the variance that is left in row k
         pivot, ratio = V[k, k], 0.0
-        if seen[k] and pivot > NEGLIGIBLE * S[k, k]:
+        if seen[k] and pivot > negligible * S[k, k]:
             ratio = 1.0 / pivot
             used += 1
             log_det += LOG_2PI + math.log(pivot)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from arkaq_edu._checks import integer, number
+from arkaq_edu._checks import affordable, integer, number
 
 
 def constant_velocity(dt: float, n_axes: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -33,7 +33,7 @@ def constant_velocity(dt: float, n_axes: int) -> tuple[NDArray[np.float64], NDAr
     Raises
     ------
     ValueError
-        If `dt` is not above 0 or `n_axes` is below 1.
+        If `dt` is not above 0, or `n_axes` is below 1 or too large for memory.
 
     References
     ----------
@@ -53,5 +53,6 @@ def constant_velocity(dt: float, n_axes: int) -> tuple[NDArray[np.float64], NDAr
     """
     dt = number("dt", dt, 0, open_low=True, open_high=True)
     n = integer("n_axes", n_axes, 1)
+    affordable("n_axes", (2 * n, 2 * n))
     A = np.eye(2 * n) + dt * np.eye(2 * n, k=n)
     return A, np.eye(n, 2 * n)

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from arkaq_edu._checks import array, shown
 from arkaq_edu.kalman.filter import KalmanFilter
 from arkaq_edu.kalman.trace import Array
 
@@ -25,10 +26,11 @@ def fit_noise(kf: KalmanFilter, Z: ArrayLike, U: ArrayLike | None = None) -> Kal
     Parameters
     ----------
     kf : KalmanFilter
-        The model and the start of the search. The search ignores its gate, since a refused
-        sighting would not count in the likelihood.
+        The model and the start of the search, with one Q and one R; A, H and B may change along
+        the track. The search ignores its gate, since a refused sighting would not count in the
+        likelihood.
     Z : array_like, shape (T, m)
-        The recorded sightings; NaN where an entry is missing.
+        The recorded sightings; NaN or masked where an entry is missing.
     U : array_like, shape (T, k), optional
         The recorded control inputs.
 
@@ -41,7 +43,7 @@ def fit_noise(kf: KalmanFilter, Z: ArrayLike, U: ArrayLike | None = None) -> Kal
     ------
     ValueError
         If Z or U does not fit the filter, if Z holds fewer numbers than there are sigmas to fit,
-        or if Q and R are zero.
+        or if Q and R are zero or change along the track.
 
     Notes
     -----
@@ -74,7 +76,12 @@ def fit_noise(kf: KalmanFilter, Z: ArrayLike, U: ArrayLike | None = None) -> Kal
         B = kf.B if kf.B.size else None
         return KalmanFilter(kf.A, kf.H, Q, R, B, kf.x0, kf.P0, gate=gate)
 
-    n = len(kf.A)
+    if not isinstance(kf, KalmanFilter):
+        raise ValueError(f"kf must be a KalmanFilter, got {shown(kf)}")
+    if kf.Q.ndim == 3 or kf.R.ndim == 3:
+        raise ValueError("kf must have one Q and one R, got matrices that change along the track")
+    Z = array("Z", Z, None, allow_nan=True)
+    n = len(kf.Q)
     sigmas = np.sqrt(np.concatenate([np.diag(kf.Q), np.diag(kf.R)]))
     unknown = int((sigmas > 0).sum())
     seen = int(np.isfinite(scaled(np.zeros(unknown)).filter(Z, U).innovation).sum())

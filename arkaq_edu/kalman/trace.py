@@ -34,6 +34,8 @@ class KalmanTrace:
         Whether the row's sighting was used: False if it is missing or failed the gate.
     log_likelihood : float
         Log probability density of all sightings that were used.
+    A, Q : ndarray, shape (n, n) or (T, n, n)
+        Of the filter, for `KalmanFilter.smooth`.
     """
 
     x: Array
@@ -46,6 +48,8 @@ class KalmanTrace:
     nis: Array
     accepted: NDArray[np.bool_]
     log_likelihood: float
+    A: Array
+    Q: Array
 
     def nis_band(self, probability: float = 0.95) -> tuple[float, float, float]:
         """Return the mean NIS of the track and the interval expected of a correct filter.

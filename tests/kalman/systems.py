@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from hypothesis import strategies as st
+from scipy import stats
 
 from arkaq_edu import KalmanFilter, constant_velocity
 
@@ -53,3 +54,51 @@ def ball(**changes):
     system = {"A": A, "H": H, "Q": np.diag([1.0, 1e-4, 25.0, 1e-3]), "R": np.diag([400.0, 1e-3])}
     system["P0"] = 1e6 * np.eye(4)
     return KalmanFilter(**(system | changes))
+
+
+def joint_gaussian(system, Z):
+    """Return what is known of the states of a track, without any recursion over time.
+
+    Each state is a linear map of x0 and the noises, so all states and sightings are one Gaussian.
+    A, H, Q and R may have an entry for each row.
+
+    Returns
+    -------
+    posterior : callable
+        Of the indices of sighted numbers and a row: mean and covariance of the state.
+    seen : ndarray
+        The indices of all sighted numbers.
+    log_likelihood : float
+    """
+    T, m = Z.shape
+    A, H, Q, R = (np.broadcast_to(system[k], (T, *np.shape(system[k])[-2:])) for k in "AHQR")
+    x0, P0 = system["x0"], system["P0"]
+    n = len(x0)
+    to_states = np.zeros((T * n, (T + 1) * n))  # from x0, w_1 .. w_T
+    source = np.zeros(((T + 1) * n, (T + 1) * n))
+    see, noise = np.zeros((T * m, T * n)), np.zeros((T * m, T * m))
+    source[:n, :n] = P0
+    previous = np.eye(n, (T + 1) * n)
+    for t in range(T):
+        states, entries = slice(t * n, (t + 1) * n), slice(t * m, (t + 1) * m)
+        previous = A[t] @ previous
+        previous[:, (t + 1) * n : (t + 2) * n] += np.eye(n)
+        to_states[states] = previous
+        source[(t + 1) * n : (t + 2) * n, (t + 1) * n : (t + 2) * n] = Q[t]
+        see[entries, states], noise[entries, entries] = H[t], R[t]
+    mean = to_states[:, :n] @ x0
+    spread = to_states @ source @ to_states.T
+    sightings, cross = see @ spread @ see.T + noise, spread @ see.T
+    seen = np.flatnonzero(~np.isnan(Z.ravel()))
+
+    def posterior(known, t):
+        rows = slice(t * n, (t + 1) * n)
+        gain = cross[rows, known] @ np.linalg.inv(sightings[np.ix_(known, known)])
+        x = mean[rows] + gain @ (Z.ravel()[known] - (see @ mean)[known])
+        return x, spread[rows, rows] - gain @ cross[rows, known].T
+
+    log_likelihood = 0.0
+    if seen.size:
+        normal = stats.multivariate_normal((see @ mean)[seen], sightings[np.ix_(seen, seen)])
+        log_likelihood = normal.logpdf(Z.ravel()[seen])
+    return posterior, seen, log_likelihood

@@ -11,28 +11,7 @@ from scipy import stats
 
 from arkaq_edu import KalmanFilter, constant_velocity
 from arkaq_edu.kalman import chi_square_band, fit_noise
-
-
-def joint_gaussian(system, T):
-    """Return mean and covariance of all states and all sightings of T rows, stacked.
-
-    Independent of any recursion: each state is a linear map of x0 and the noises.
-    """
-    A, H, Q, R, x0, P0 = (system[name] for name in ("A", "H", "Q", "R", "x0", "P0"))
-    n = A.shape[0]
-    power = np.linalg.matrix_power
-    to_states = np.zeros((T * n, (T + 1) * n))  # from x0, w_1 .. w_T
-    for t in range(T):
-        for s in range(t + 2):
-            to_states[t * n : (t + 1) * n, s * n : (s + 1) * n] = power(A, t + 1 - s)
-    source = np.zeros(((T + 1) * n, (T + 1) * n))
-    source[:n, :n] = P0
-    source[n:, n:] = np.kron(np.eye(T), Q)
-    mean = to_states[:, :n] @ x0
-    states = to_states @ source @ to_states.T
-    see = np.kron(np.eye(T), H)
-    sightings = see @ states @ see.T + np.kron(np.eye(T), R)
-    return mean, states, see @ mean, sightings, states @ see.T
+from tests.kalman.systems import joint_gaussian
 
 
 @st.composite
@@ -59,20 +38,11 @@ def small_problems(draw):
 @given(small_problems())
 def test_filter_smoother_and_likelihood_are_those_of_the_joint_gaussian(problem):
     system, Z = problem
-    T, n = len(Z), len(system["A"])
+    T = len(Z)
     kf = KalmanFilter(**system)
     trace = kf.filter(Z)
     smoothed, sure = kf.smooth(trace)
-    mean, states, seen_mean, sightings, cross = joint_gaussian(system, T)
-    seen = np.flatnonzero(~np.isnan(Z.ravel()))
-
-    def posterior(known, t):
-        """Return mean and covariance of the state in row t, given the known sightings."""
-        rows = slice(t * n, (t + 1) * n)
-        gain = cross[rows, known] @ np.linalg.inv(sightings[np.ix_(known, known)])
-        x = mean[rows] + gain @ (Z.ravel()[known] - seen_mean[known])
-        return x, states[rows, rows] - gain @ cross[rows, known].T
-
+    posterior, seen, expected = joint_gaussian(system, Z)
     for t in range(T):
         until_now = seen[seen < (t + 1) * Z.shape[1]]
         for (x, P), ours_x, ours_P in [
@@ -81,10 +51,6 @@ def test_filter_smoother_and_likelihood_are_those_of_the_joint_gaussian(problem)
         ]:
             np.testing.assert_allclose(ours_x, x, rtol=1e-8, atol=1e-8)
             np.testing.assert_allclose(ours_P, P, rtol=1e-8, atol=1e-8)
-    expected = 0.0
-    if seen.size:
-        normal = stats.multivariate_normal(seen_mean[seen], sightings[np.ix_(seen, seen)])
-        expected = normal.logpdf(Z.ravel()[seen])
     assert trace.log_likelihood == pytest.approx(expected, rel=1e-9, abs=1e-9)
 
 
@@ -233,7 +199,11 @@ def test_fitting_uses_the_control_input():
         ),
         (lambda: fit_noise(ball(0 * Q_TRUE, 0 * R_TRUE), np.ones((9, 2))), "got zeros only"),
         (lambda: fit_noise(ball(Q_TRUE, R_TRUE), np.ones((9, 3))), r"Z must have shape \(any, 2\)"),
-        (lambda: chi_square_band(0), r"dof must be a number in \(0, inf\), got 0"),
+        (lambda: fit_noise(ball([Q_TRUE] * 9, R_TRUE), np.ones((9, 2))), "kf must have one Q and one"),
+        (lambda: fit_noise("ball", [[1.0]]), "kf must be a KalmanFilter, got 'ball'"),
+        (lambda: chi_square_band(1e-320), r"dof must be a number in .* got 1e-320"),
+        (lambda: ball(Q_TRUE, R_TRUE).smooth("track"), "trace must be a KalmanTrace, got 'track'"),
+        (lambda: chi_square_band(0), r"dof must be a number in \[1e-100, 1e\+100\], got 0"),
         (lambda: chi_square_band(2, 0), "count must be an integer >= 1, got 0"),
         (lambda: chi_square_band(2, 1, 1.0), r"probability must be a number in \(0, 1\), got 1"),
         (
