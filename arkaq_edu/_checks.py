@@ -191,9 +191,7 @@ def _entry(entry: Any) -> float:
     return math.nan if missing else float(entry)
 
 
-def covariance(
-    name: str, value: ArrayLike, n: int, *, stack: bool = False
-) -> NDArray[np.float64]:
+def covariance(name: str, value: ArrayLike, n: int, *, stack: bool = False) -> NDArray[np.float64]:
     """Return `value` as a symmetric positive semi-definite (n, n) matrix, or a stack (T, n, n).
 
     Examples
@@ -208,8 +206,8 @@ def covariance(
     x = array(name, value, (None, n, n) if stack else (n, n))
     if x.size == 0:
         return x
-    variances = x.diagonal(axis1=-2, axis2=-1)
-    if variances.min() >= 0 and np.count_nonzero(x) == np.count_nonzero(variances):
+    variances = x.diagonal(0, -2, -1)
+    if np.count_nonzero(x) == np.count_nonzero(variances > 0):
         return x  # a diagonal shows its eigenvalues
     transposed = x.swapaxes(-2, -1)
     scale = np.maximum(np.abs(x).max(axis=(-2, -1)), np.finfo(float).tiny)

@@ -287,7 +287,7 @@ def inverse_each(S, seen, V):
 
 
 @kernel
-def bounded(P):
+def bounded_each(P):
     """Tell whether all variances are numbers that the package allows."""
     largest = 0.0
     for i in range(P.shape[0]):
@@ -337,7 +337,7 @@ def batch(A, H, Q, R, x0, P0, Z, x, L):
         mul_shared(H, P_prior, HP)
         mul_shared_transpose(HP, H, S)
         add(S, R)
-        if not (inverse_each(S, seen, S_inverse) and bounded(P_prior)):
+        if not (inverse_each(S, seen, S_inverse) and bounded_each(P_prior)):
             return False
         transpose_each(HP, PH)
         mul_each(PH, S_inverse, K)  # eq 2.57: K = P H' (H P H' + R)^-1

@@ -15,7 +15,6 @@ from arkaq_edu.kalman.matrices import (
     HALF_LOST,
     LOG_2PI,
     NEGLIGIBLE,
-    first_beyond,
     inverse,
     mul,
     outer,
@@ -77,6 +76,15 @@ def gain_by_rows(H, R, P, seen):
 
 
 @kernel
+def bounded(x, P):
+    """Tell whether an estimate is made of numbers that the package allows."""
+    fine = True
+    for i in range(len(x)):
+        fine = fine and abs(x[i]) <= LARGEST and P[i, i] <= LARGEST
+    return fine
+
+
+@kernel
 def measurement_update(H, R, x, P, z, gates):
     """Correct a predicted x and P by a sighting z; NaN marks the entries that are missing.
 
@@ -128,9 +136,9 @@ def _covariances(name: str, value: ArrayLike, n: int) -> Array:
 def check_growth(rows: bool = False, **arrays: Array) -> None:
     """Refuse estimates that are larger than any number allowed."""
     for name, values in arrays.items():
-        i = first_beyond(values.reshape(-1), LARGEST)
-        if i >= 0:
-            where = f" in row {i // math.prod(values.shape[1:])}" if rows else ""
+        if not -LARGEST <= values.min(initial=0) <= values.max(initial=0) <= LARGEST:  # or NaN
+            beyond = ~(np.abs(values) <= LARGEST)
+            where = f" in row {np.argwhere(beyond)[0, 0]}" if rows else ""
             raise ValueError(f"{name} has grown beyond {LARGEST:g}{where}: the filter diverges")
 
 
@@ -217,10 +225,11 @@ class KalmanFilter:
 
     Notes
     -----
-    A NaN or masked entry of z is missing. The other entries are used as they are; if all are missing, x
-    and P stay as predicted. An entry that is already known exactly (R = 0 twice) adds nothing and
-    is skipped, so that no singular matrix is inverted. P is updated in Joseph's form: it equals eq
-    2.59 and stays symmetric and positive after a million steps.
+    A NaN or masked entry of z is missing. The other entries are used as they are; if all are
+    missing, x and P stay as predicted. An entry that is already known exactly (R = 0 twice) adds
+    nothing and is skipped, so that no singular matrix is inverted. However wide P is beside R,
+    each entry with a noise of its own counts. P is updated in Joseph's form: it equals eq 2.59 and
+    stays symmetric and positive after a million steps.
 
     Where the thesis misleads:
 
@@ -361,10 +370,12 @@ class KalmanFilter:
         >>> kf.predict([1.5])
         array([1350.])
         """
-        self._need_one("predict", A=self._A, B=self._B, Q=self._Q)
+        if self._T is not None:
+            self._need_one("predict", A=self._A, B=self._B, Q=self._Q)
         u = self._inputs("u", u, ())
         x, P = time_update(self._A, self._B, self._Q, self._x, self._P, u)
-        check_growth(P=P, x=x)
+        if not bounded(x, P):
+            check_growth(P=P, x=x)
         self._x, self._P = x, P
         return x.copy()
 
@@ -400,13 +411,15 @@ class KalmanFilter:
         m = self._H.shape[-2]
         z = _copied(array("z", z, (m,), allow_nan=True))
         R = self._R if R is None else _copied(covariance("R", R, m))
-        self._need_one("update", H=self._H, R=R)
-        x, P, *rest = measurement_update(self._H, R, self._x, self._P, z, self._gates)
-        check_growth(P=P, x=x)
-        self._x, self._P = x, P
-        (
-            self._K, self._innovation, self._S, self.nis, self.log_likelihood, self.accepted,
-        ) = rest  # fmt: skip
+        if self._T is not None:
+            self._need_one("update", H=self._H, R=R)
+        x, P, K, innovation, S, nis, log_likelihood, accepted = measurement_update(
+            self._H, R, self._x, self._P, z, self._gates
+        )
+        if not bounded(x, P):
+            check_growth(P=P, x=x)
+        self._x, self._P, self._K, self._innovation, self._S = x, P, K, innovation, S
+        self.nis, self.log_likelihood, self.accepted = nis, log_likelihood, accepted
         return x.copy()
 
     def filter(
@@ -448,7 +461,7 @@ class KalmanFilter:
         from arkaq_edu.kalman.compiled import track  # it imports the equations above
 
         m, n = self._H.shape[-2:]
-        Z = _copied(array("Z", Z, (self._rows(self._R), m), allow_nan=True))
+        Z = _copied(array("Z", Z, (self._T, m), allow_nan=True))
         T = len(Z)
         U = self._inputs("U", U, (T,)) if U is not None else np.zeros((1, self._B.shape[-1]))
         Rs = self._R
@@ -531,20 +544,16 @@ class KalmanFilter:
         variances[variances == 0] = 1.0
         return np.diag(np.minimum(1e6 * variances, LARGEST))
 
-    def _rows(self, R: Array) -> int | None:
-        """Return for how many rows there are matrices, or None if none of them changes."""
+    def _checked_R(self, value: ArrayLike) -> Array:
+        """Return a new R; note for how many rows there are matrices, or None if none changes."""
+        R = _covariances("R", value, self._H.shape[-2])
         matrices = {"A": self._A, "H": self._H, "Q": self._Q, "B": self._B, "R": R}
         lengths = {name: len(M) for name, M in matrices.items() if M.ndim == 3}
         for name, rows in lengths.items():
             first, T = next(iter(lengths.items()))
             if rows != T:
                 raise ValueError(f"{name} must have {T} rows, as {first} has, got {rows}")
-        return next(iter(lengths.values()), None)
-
-    def _checked_R(self, value: ArrayLike) -> Array:
-        """Return a new R that fits the other matrices."""
-        R = _covariances("R", value, self._H.shape[-2])
-        self._rows(R)
+        self._T = next(iter(lengths.values()), None)
         return R
 
     def _need_one(self, method: str, **matrices: Array) -> None:

@@ -15,8 +15,9 @@ from arkaq_edu._compiled import kernel
 LOG_2PI = math.log(2 * math.pi)
 # If only this fraction of a variance is left once the rows before are known, it is rounding error.
 NEGLIGIBLE = 16 * float(np.finfo(np.float64).eps)
-# If less than this fraction is left, rounding has taken half of its digits.
-HALF_LOST = 1e-8
+# If less than this fraction is left, rounding has taken about half of its digits. The default P0
+# leaves more: a second sensor of the same state has about 1e-6 left.
+HALF_LOST = 1e-7
 
 
 @kernel
@@ -87,15 +88,6 @@ def outer(x, y):
         for j in range(len(y)):
             A[i, j] = x[i] * y[j]
     return A
-
-
-@kernel
-def first_beyond(values, limit):
-    """Return the index of the first value that is NaN or of a larger magnitude, or -1."""
-    for i in range(len(values)):
-        if not abs(values[i]) <= limit:
-            return i
-    return -1
 
 
 @kernel

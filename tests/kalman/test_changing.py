@@ -21,7 +21,7 @@ def changing_systems(draw):
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     n, m, k = draw(st.integers(1, 3)), draw(st.integers(1, 3)), draw(st.integers(1, 2))
     system = {
-        "A": rng.normal(size=(T, n, n)),
+        "A": np.linalg.qr(rng.normal(size=(T, n, n)))[0] * rng.uniform(0.5, 1.1, (T, 1, n)),
         "H": rng.normal(size=(T, m, n)),
         "Q": np.array([random_covariance(rng, n, draw(st.integers(0, n)), -2) for _ in range(T)]),
         "R": np.array([random_covariance(rng, m, m, -2) for _ in range(T)]),
@@ -136,22 +136,31 @@ def wanderer(**changes):
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: wanderer(A=[[[1]]] * 3).predict(), "A must be one matrix for predict, got one for"),
+        (
+            lambda: wanderer(A=[[[1]]] * 3).predict(),
+            "A must be one matrix for predict, got one for",
+        ),
         (lambda: wanderer(Q=[[[1]]] * 3).predict(), "Q must be one matrix for predict"),
         (lambda: wanderer(B=[[[1]]] * 3).predict([1]), "B must be one matrix for predict"),
         (lambda: wanderer(H=[[[1]]] * 3).update([1]), "H must be one matrix for update"),
         (lambda: wanderer(R=[[[1]]] * 3).update([1]), "R must be one matrix for update"),
         (lambda: wanderer(A=[[[1]]] * 3, Q=[[[1]]] * 2), "Q must have 3 rows, as A has, got 2"),
-        (lambda: wanderer(H=[[[1]]] * 3).filter([[1]]), r"Z must have shape \(3, 1\), got \(1, 1\)"),
+        (
+            lambda: wanderer(H=[[[1]]] * 3).filter([[1]]),
+            r"Z must have shape \(3, 1\), got \(1, 1\)",
+        ),
         (lambda: wanderer(A=np.ones((0, 1, 1))), "A must have at least one row"),
-        (lambda: wanderer(A=np.ones((3, 2, 1))), r"A must have shape \(any, 1, 1\), got"),
+        (lambda: wanderer(A=np.ones((3, 2, 1))), r"A must have shape \(any, 2, 2\), got"),
         (lambda: wanderer(A=np.ones((1, 1, 1, 1))), r"A must have shape \(any, any\), got"),
         (lambda: wanderer(R=[[[1]], [[-4]]]), "R must be .* got an eigenvalue of -4 in row 1"),
         (
             lambda: KalmanFilter(np.eye(2), np.eye(2), [np.eye(2), [[1, 2], [0, 1]]], np.eye(2)),
             r"Q must be a covariance \(symmetric\), got 2 at \(0, 1\) and 0 at \(1, 0\) in row 1",
         ),
-        (lambda: setattr(wanderer(A=[[[1]]] * 3), "R", [[[1]]] * 2), "R must have 3 rows, as A has"),
+        (
+            lambda: setattr(wanderer(A=[[[1]]] * 3), "R", [[[1]]] * 2),
+            "R must have 3 rows, as A has",
+        ),
     ],
 )
 def test_what_does_not_fit_is_refused(call, message):

@@ -199,7 +199,10 @@ def test_fitting_uses_the_control_input():
         ),
         (lambda: fit_noise(ball(0 * Q_TRUE, 0 * R_TRUE), np.ones((9, 2))), "got zeros only"),
         (lambda: fit_noise(ball(Q_TRUE, R_TRUE), np.ones((9, 3))), r"Z must have shape \(any, 2\)"),
-        (lambda: fit_noise(ball([Q_TRUE] * 9, R_TRUE), np.ones((9, 2))), "kf must have one Q and one"),
+        (
+            lambda: fit_noise(ball([Q_TRUE] * 9, R_TRUE), np.ones((9, 2))),
+            "kf must have one Q",
+        ),
         (lambda: fit_noise("ball", [[1.0]]), "kf must be a KalmanFilter, got 'ball'"),
         (lambda: chi_square_band(1e-320), r"dof must be a number in .* got 1e-320"),
         (lambda: ball(Q_TRUE, R_TRUE).smooth("track"), "trace must be a KalmanTrace, got 'track'"),
