@@ -11,7 +11,8 @@ A refusal names the argument, what was given and what is allowed. The rule for n
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Iterable
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,6 +27,8 @@ MOST_BYTES = 2**31
 MOST_INTEGER = 2**63 - 1
 
 _MOST_SHOWN = 60  # characters of a value in a message
+
+_T = TypeVar("_T")
 
 
 def number(
@@ -170,17 +173,18 @@ def array(
 
 def _floats(name: str, value: ArrayLike) -> NDArray[np.float64]:
     """Return `value` as a float64 array in which every missing entry is NaN."""
-    refusal = ValueError(f"{name} must be an array of numbers, got {shown(value)}")
     try:
         x = value if isinstance(value, np.ndarray) else np.asarray(value)
         if x.dtype.kind not in "biufO":
-            raise refusal
+            raise TypeError
+        if type(x) is np.ndarray and x.dtype.kind != "O":  # no mask, so nothing is missing
+            return x.astype(np.float64)
         if x.dtype.kind == "O":  # mixed entries: missing ones become NaN, text is refused
             entries = [_entry(entry) for entry in np.ma.filled(x, np.nan).flat]
             return np.array(entries, dtype=np.float64).reshape(x.shape)
         return np.asarray(np.ma.filled(np.ma.asarray(x).astype(np.float64), np.nan))
     except (TypeError, ValueError, OverflowError):
-        raise refusal from None
+        raise ValueError(f"{name} must be an array of numbers, got {shown(value)}") from None
 
 
 def _entry(entry: Any) -> float:
@@ -361,6 +365,46 @@ def generator(name: str, value: Any) -> np.random.Generator:
                 f"{name} must be a numpy Generator, an integer >= 0 or None, got {shown(value)}"
             ) from None
     return np.random.default_rng(value)
+
+
+def seed(name: str, value: Any) -> int | None:
+    """Return `value` as the seed of an environment: an integer >= 0, or None.
+
+    Examples
+    --------
+    >>> seed("seed", np.int64(3)), seed("seed", None)
+    (3, None)
+    """
+    return None if value is None else integer(name, value)
+
+
+def choice(name: str, value: Any, allowed: Iterable[str]) -> str:
+    """Return `value` if it is one of the `allowed` names, or raise ``ValueError``.
+
+    Examples
+    --------
+    >>> choice("placement", "aera", ["area", "thesis"])
+    Traceback (most recent call last):
+    ValueError: placement must be 'area' or 'thesis', got 'aera'
+    """
+    names = list(allowed)
+    if not (isinstance(value, str) and value in names):
+        raise ValueError(f"{name} must be {' or '.join(map(repr, names))}, got {shown(value)}")
+    return value
+
+
+def instance(name: str, value: Any, kind: type[_T]) -> _T:
+    """Return `value` if it is an instance of `kind`, or raise ``ValueError``.
+
+    Examples
+    --------
+    >>> instance("blurs", "no", bool)
+    Traceback (most recent call last):
+    ValueError: blurs must be of the class bool, got 'no'
+    """
+    if not isinstance(value, kind):
+        raise ValueError(f"{name} must be of the class {kind.__name__}, got {shown(value)}")
+    return value
 
 
 def affordable(name: str, shape: tuple[int, ...]) -> tuple[int, ...]:

@@ -7,6 +7,8 @@ import os
 import re
 from pathlib import Path
 
+from arkaq_edu._files import replacing
+
 FIRST_PAGE = "00_start_here.ipynb"
 _SOLUTION = re.compile(r"^( *)### BEGIN SOLUTION\n.*?^ *### END SOLUTION", re.MULTILINE | re.DOTALL)
 
@@ -97,7 +99,8 @@ def copy_course(folder: Path | str) -> tuple[list[Path], list[Path]]:
         target = Path(folder) / name
         content = without_solutions(file) if file.suffix == ".ipynb" else file.read_bytes()
         if not os.path.lexists(target):
-            write_whole(content, target)
+            with replacing(target) as fresh:
+                fresh.write_bytes(content)
             copied.append(name)
         elif not target.is_file() or target.read_bytes() != content:
             kept.append(name)
@@ -137,14 +140,3 @@ def _files(folder: Path) -> list[Path]:
         and path.suffix not in {".py", ".pyc"}
         and not any(part.startswith(".") for part in path.relative_to(folder).parts)
     ]
-
-
-def write_whole(content: bytes, target: Path) -> None:
-    """Write a file whole or not at all, even if interrupted."""
-    target.parent.mkdir(parents=True, exist_ok=True)
-    part = target.with_name(target.name + ".part")
-    try:
-        part.write_bytes(content)
-        part.replace(target)
-    finally:
-        part.unlink(missing_ok=True)

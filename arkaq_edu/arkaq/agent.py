@@ -7,7 +7,7 @@ import os
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 
 from arkaq_edu import _checks
 from arkaq_edu.arkaq import storage
@@ -66,6 +66,8 @@ class Arkaq:
         The phase that `learn` goes on with.
     done_in_phase : int
         The patterns, or the cycles, of that phase so far.
+    environments : dict
+        What decides how episodes go in the environment of each phase, as plain data by name.
 
     Raises
     ------
@@ -119,20 +121,21 @@ class Arkaq:
         rng: int | np.random.Generator | None = None,
     ) -> None:
         self.vigilance = _checks.number("vigilance", vigilance, 0, 2, open_low=True)
-        if task not in TASKS:
-            raise ValueError(f"task must be 'approach' or 'goal', got {task!r}")
-        self.task = task
+        self.task = _checks.choice("task", task, TASKS)
         if isinstance(sensing, str):
             if sensing not in PRESETS:
                 names = ", ".join(map(repr, PRESETS))
-                raise ValueError(f"sensing must be {names} or a Sensing, got {sensing!r}")
+                given = _checks.shown(sensing)
+                raise ValueError(f"sensing must be {names} or a Sensing, got {given}")
             sensing = PRESETS[sensing]()
-        self.sensing: Sensing = sensing or TASKS[task].sensing()
-        self.learning = learning or TASKS[task].learning()
+        sensing = TASKS[task].sensing() if sensing is None else sensing
+        learning = TASKS[task].learning() if learning is None else learning
+        self.sensing = _checks.instance("sensing", sensing, Sensing)
+        self.learning = _checks.instance("learning", learning, TrainingSettings)
         # A generator is asked only once. Every episode then makes its own seed from this one, so
         # that a resumed run draws the same numbers.
         if rng is None or isinstance(rng, np.random.Generator):
-            rng = int(np.random.default_rng(rng).integers(2**63))
+            rng = int(_checks.generator("rng", rng).integers(2**63))
         self.seed = _checks.integer("rng", rng)
         self.segmenter: Segmenter = self.default_segmenter() if segmenter is None else segmenter
         self.learner: Learner = QLearning() if learner is None else learner
@@ -143,6 +146,7 @@ class Arkaq:
         self.history: list[tuple[str, int, float, bool]] = []
         self.cycles = 0
         self.phase, self.done_in_phase = SEGMENTING, 0
+        self.environments: dict[str, dict[str, Any]] = {}
         self.estimator = Estimator(self.sensing)
         self.reset()
 
@@ -161,12 +165,12 @@ class Arkaq:
         self.estimator.reset()
         self._last_action: int | None = None
 
-    def act(self, observation: NDArray[np.floating]) -> int:
+    def act(self, observation: ArrayLike) -> int:
         """Return the greedy action, given this observation and all before it in the episode.
 
         Parameters
         ----------
-        observation : ndarray, shape (m + 1,)
+        observation : array_like, shape (m + 1,)
             The environment's observation; its last entry is 1 with a sighting and 0 without.
 
         Returns
@@ -183,7 +187,6 @@ class Arkaq:
         """
         if self.q is None:
             raise RuntimeError("this agent has not learned yet: call learn first")
-        observation = _checks.array("observation", observation, (len(self.sensing.low) + 1,))
         pattern = self.estimator.observe(observation, self._last_action)
         self._last_action = self.q.greedy(self.art.category(pattern))
         return self._last_action
@@ -204,7 +207,7 @@ class Arkaq:
         checkpoint : path, optional
             A file for the run. It is written at the start, between episodes every few seconds,
             and at the end. If it exists, the run in it is resumed, with the same result as if it
-            had never been interrupted.
+            had never been interrupted. No other run can use the file at the same time.
         progress : bool
             Whether to show progress bars.
 
@@ -216,20 +219,22 @@ class Arkaq:
         Raises
         ------
         ValueError
-            If `checkpoint` holds a run with other settings or another seed, if a part cannot be
-            saved there (see `save`), or if the environment belongs to another task.
+            If `checkpoint` holds a run with other settings, another seed or another environment,
+            if it is in use by another run, if a part cannot be saved there (see `save`), or if the
+            environment belongs to another task.
         RuntimeError
             If the ball, or the goal, is never seen.
         """
-        self.segment(env, checkpoint, progress)
-        file = storage.Checkpoint(self, checkpoint)
-        if self.phase == LEARNING:
-            if self.q is None:
-                self.new_learner(int(env.action_space.n))  # type: ignore[attr-defined]
-            TASKS[self.task].q_learning(self, env, file, progress).run()
-            self.phase = FINISHED
-        self.reset()
-        file.write()
+        with storage.Checkpoint(self, checkpoint) as file:
+            file.resume(env, learns=True)
+            self._segment(env, file, progress)
+            if self.phase == LEARNING:
+                if self.q is None:
+                    self.new_learner(int(env.action_space.n))  # type: ignore[attr-defined]
+                TASKS[self.task].q_learning(self, env, file, progress).run()
+                self.phase = FINISHED
+            self.reset()
+            file.write()
         return self
 
     def segment(
@@ -250,14 +255,17 @@ class Arkaq:
         Arkaq
             The agent itself. An agent that has already segmented its world does nothing.
         """
-        file = storage.Checkpoint(self, checkpoint)
-        file.resume()
+        with storage.Checkpoint(self, checkpoint) as file:
+            file.resume(env, learns=False)
+            self._segment(env, file, progress)
+        return self
+
+    def _segment(self, env: gymnasium.Env, file: storage.Checkpoint, progress: bool) -> None:
         file.write()
         if self.phase == SEGMENTING:
             TASKS[self.task].segmentation(self, env, file, progress).run()
             self.phase, self.done_in_phase = LEARNING, 0
             file.write()
-        return self
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the agent to an npz file of arrays and JSON, without pickles.
@@ -300,4 +308,5 @@ class Arkaq:
 def _require(role: str, part: Any, methods: tuple[str, ...]) -> None:
     for name in methods:
         if not callable(getattr(part, name, None)):
-            raise ValueError(f"{role} must have the methods {', '.join(methods)}, got {part!r}")
+            given = _checks.shown(part)
+            raise ValueError(f"{role} must have the methods {', '.join(methods)}, got {given}")

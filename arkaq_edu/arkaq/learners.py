@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sklearn.base import BaseEstimator
 
+from arkaq_edu import _checks
 from arkaq_edu.arkaq.settings import TrainingSettings
 from arkaq_edu.mdp import QLearner, softmax
 
@@ -119,32 +120,39 @@ class TableLearner(BaseEstimator):
 
     def begin(self, n_states: int, n_actions: int, settings: TrainingSettings) -> None:
         """Make a table of zeros."""
+        _checks.instance("settings", settings, TrainingSettings)
         self.table = QLearner(n_states, n_actions, settings.alpha, settings.gamma)
         self._alpha = settings.alpha
 
     def explore(self, s: int, rng: np.random.Generator) -> int:
         """Draw an action never backed up in `s`; where there is none, any action."""
-        self.table.rng = rng
+        self.table.rng = _checks.generator("rng", rng)
         return self.table.explore(s)
 
     def exploit(self, s: int, temperature: float, rng: np.random.Generator) -> int:
         """Draw from the Boltzmann distribution (eq 3.2)."""
-        self.table.rng = rng
+        self.table.rng = _checks.generator("rng", rng)
         return self.table.boltzmann(s, temperature)
 
     def greedy(self, s: int) -> int:
         """Return the action with the highest Q; of several, the first (eq 3.3)."""
-        return int(self.Q[s].argmax())
+        return int(self.Q[self._state("s", s)].argmax())
 
     def back_up(self, s: int, a: int, target: float) -> None:
         """Move Q(s, a) toward a target."""
+        s, a = self._state("s", s), _checks.integer("a", a, 0, self.Q.shape[1] - 1)
+        target = _checks.number("target", target)
         self.visits[s, a] += 1
         alpha = self._alpha(int(self.visits[s, a]))
         self.Q[s, a] += alpha * (target - self.Q[s, a])
 
     def expected(self, s: int, temperature: float) -> float:
         """Return the expected value of `s` under the Boltzmann policy."""
+        s = self._state("s", s)
         return float(softmax(self.Q[s], temperature) @ self.Q[s])
+
+    def _state(self, name: str, s: int) -> int:
+        return _checks.integer(name, s, 0, len(self.Q) - 1)
 
 
 class QLearning(TableLearner):

@@ -11,6 +11,9 @@ from sklearn.base import BaseEstimator
 
 from arkaq_edu import _checks
 
+#: With a table of values for eight actions, so many cells take half a gigabyte.
+MOST_CELLS = 2**22
+
 
 class Segmenter(Protocol):
     """What `Arkaq` needs of a segmenter, which every network of `arkaq_edu.art` provides.
@@ -64,7 +67,7 @@ class UniformGrid(BaseEstimator):
     Parameters
     ----------
     cells : sequence of int, length m
-        The number of cells along each feature, each at least 1.
+        The number of cells along each feature, each at least 1, and 2**22 in all at the most.
 
     Attributes
     ----------
@@ -74,7 +77,7 @@ class UniformGrid(BaseEstimator):
     Raises
     ------
     ValueError
-        If a number of cells is not an integer of at least 1.
+        If a number of cells is not an integer of at least 1, or there are too many in all.
 
     Examples
     --------
@@ -86,7 +89,11 @@ class UniformGrid(BaseEstimator):
     """
 
     def __init__(self, cells: tuple[int, ...] = (10, 10)) -> None:
-        self.cells = tuple(_checks.integer("cells", n, 1) for n in cells)
+        numbers = _checks.integers("cells", cells, 1)
+        if numbers.ndim != 1 or not len(numbers):
+            raise ValueError(f"cells must be a sequence of integers, got {_checks.shown(cells)}")
+        self.cells = tuple(int(n) for n in numbers)
+        _checks.integer("cells (their product)", math.prod(self.cells), 1, MOST_CELLS)
         self.counts_ = np.zeros(math.prod(self.cells), dtype=np.int64)
 
     @property
@@ -116,9 +123,9 @@ class UniformGrid(BaseEstimator):
         ValueError
             If the patterns have another number of features than the grid.
         """
-        X = np.asarray(X, dtype=np.float64)
-        if X.shape[-1:] != (len(self.cells),):
-            raise ValueError(f"X must have {len(self.cells)} features, got shape {X.shape}")
+        if np.shape(X)[-1:] != (len(self.cells),):
+            raise ValueError(f"X must have {len(self.cells)} features, got shape {np.shape(X)}")
+        X = _checks.array("X", X, (None,) * np.ndim(X)).clip(-1.0, 1.0)
         places = np.floor((X + 1) / 2 * self.cells).astype(np.intp)
         return np.ravel_multi_index(tuple(np.moveaxis(places, -1, 0)), self.cells, mode="clip")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu import _checks
 from arkaq_edu.kalman import KalmanFilter, constant_velocity
+
+_FARTHEST = 1e20  # mm
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,14 +25,16 @@ class Sensing:
     low, high : sequence of float, length m
         The interval of each measurement. It is clipped to it and scaled to [-1, 1].
     A, H, Q, R, P0 : array_like
-        The Kalman filter, with n states and m measurements. Covariances are in squared units of
-        the state (Q, P0) and of the measurements (R).
+        The Kalman filter, with n >= m states and m measurements. The first m states are what is
+        measured. Covariances are in squared units of the state (Q, P0) and of the measurements
+        (R). All arrays are copied and read-only.
     B : array_like, shape (n, n_actions), optional
         What each action does to the state, one column per action. The filter's control input is
         then the action taken. Without `B` the filter does not know the actions.
     range_noise : float
         The variance of the first measurement is larger by ``(range_noise * z[0]**2)**2``
-        (`range_noise` in 1/mm): the error of a distance that is read from the size of a blob.
+        (`range_noise` in 1/mm, in [0, 1]): the error of a distance that is read from the size of
+        a blob.
 
     Raises
     ------
@@ -55,10 +60,21 @@ class Sensing:
     def __post_init__(self) -> None:
         low = _checks.array("low", self.low, (None,))
         high = _checks.array("high", self.high, low.shape)
-        if not (low < high).all():
-            raise ValueError(f"high must be above low, got {self.low!r} and {self.high!r}")
-        _checks.number("range_noise", self.range_noise, 0)
-        self.filter()
+        if not len(low) or not (low < high).all():
+            given = f"{_checks.shown(self.low)} and {_checks.shown(self.high)}"
+            raise ValueError(f"high must be above low, got {given}")
+        n = len(_checks.array("A", self.A, (None, None)))
+        if n < len(low):
+            raise ValueError(f"A must have a state for each of {len(low)} measurements, got {n}")
+        _checks.array("H", self.H, (len(low), n))
+        kalman = self.filter()  # it refuses what is not a filter
+        keep = partial(object.__setattr__, self)
+        keep("low", tuple(low.tolist()))
+        keep("high", tuple(high.tolist()))
+        for name in ("A", "H", "Q", "R", "P0"):
+            keep(name, getattr(kalman, name))
+        keep("B", None if self.B is None else kalman.B)
+        keep("range_noise", _checks.number("range_noise", self.range_noise, 0, 1))
 
     def __eq__(self, other: object) -> bool:
         """Compare by value: arrays and lists of the same numbers are equal."""
@@ -132,7 +148,15 @@ class Sensing:
         return KalmanFilter(self.A, self.H, self.Q, self.R, self.B, x0, self.P0)
 
     def noise(self, z: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return R for one sighting, shape (m, m)."""
+        """Return R for one sighting, shape (m, m).
+
+        Raises
+        ------
+        ValueError
+            If the distance is beyond 1e20 in magnitude: its fourth power would overflow.
+        """
+        z = _checks.array("z", z, (len(self.low),))
+        _checks.number("z[0]", float(z[0]), -_FARTHEST, _FARTHEST)
         R = np.array(self.R, dtype=np.float64)
         R[0, 0] += (self.range_noise * z[0] ** 2) ** 2
         return R
@@ -157,13 +181,19 @@ class Sensing:
         >>> Sensing.thesis().scale([4100.0, -0.25])
         array([ 1. , -0.5])
         """
-        low, high = np.asarray(self.low), np.asarray(self.high)
-        return np.clip((np.asarray(z) - (low + high) / 2) / ((high - low) / 2), -1.0, 1.0)
+        z = _checks.array("z", z, (*(None,) * (np.ndim(z) - 1), len(self.low)))
+        return scaled(z, *self.interval())
 
     def unscale(self, patterns: ArrayLike) -> NDArray[np.float64]:
         """Return patterns as measurements: the inverse of `scale` inside the interval."""
+        shape = (*(None,) * (np.ndim(patterns) - 1), len(self.low))
         low, high = np.asarray(self.low), np.asarray(self.high)
-        return np.asarray(patterns) * (high - low) / 2 + (low + high) / 2
+        return _checks.array("patterns", patterns, shape) * (high - low) / 2 + (low + high) / 2
+
+    def interval(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return the middle and half the width of the interval of each measurement."""
+        low, high = np.asarray(self.low), np.asarray(self.high)
+        return (low + high) / 2, (high - low) / 2
 
     def to_json(self) -> dict[str, Any]:
         """Return the settings as plain lists and numbers."""
@@ -175,8 +205,14 @@ class Sensing:
     @classmethod
     def from_json(cls, settings: Mapping[str, Any]) -> Sensing:
         """Return the settings that `to_json` wrote."""
-        low, high = tuple(settings["low"]), tuple(settings["high"])
-        return cls(**{**settings, "low": low, "high": high})
+        return cls(**_checks.instance("settings", settings, dict))
+
+
+def scaled(
+    z: NDArray[np.float64], middle: NDArray[np.float64], half: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return measurements as patterns in [-1, 1], clipped to the interval `middle` +- `half`."""
+    return np.minimum(np.maximum((z - middle) / half, -1.0), 1.0)
 
 
 #: The settings that `Arkaq` knows by name.
@@ -209,20 +245,21 @@ class Estimator:
     kalman: KalmanFilter = field(init=False)
 
     def __post_init__(self) -> None:
-        self.kalman = self.sensing.filter()
+        self.kalman = _checks.instance("sensing", self.sensing, Sensing).filter()
         B = self.sensing.B
-        self._inputs = None if B is None else np.eye(np.asarray(B).shape[1])
+        self._inputs = None if B is None else np.eye(B.shape[1])
+        self._interval = self.sensing.interval()
 
     def reset(self) -> None:
         """Forget everything: the supervisor has reset the world."""
         self.kalman.reset()
 
-    def observe(self, observation: NDArray[np.floating], action: int | None) -> NDArray[np.float64]:
+    def observe(self, observation: ArrayLike, action: int | None) -> NDArray[np.float64]:
         """Take in an observation and return the pattern.
 
         Parameters
         ----------
-        observation : ndarray, shape (m + 1,)
+        observation : array_like, shape (m + 1,)
             The measurements, then 1 with a sighting and 0 without.
         action : int or None
             The action that led here; None at the start of an episode.
@@ -231,10 +268,20 @@ class Estimator:
         -------
         ndarray, shape (m,)
             The scaled estimate, each entry in [-1, 1].
+
+        Raises
+        ------
+        ValueError
+            If the observation has the wrong shape or is not finite, or the action is unknown.
+            Then the estimate is as it was.
         """
+        m = len(self.sensing.low)
+        look = _checks.array("observation", observation, (m + 1,))
+        R = self.sensing.noise(look[:m]) if look[m] and self.sensing.range_noise else None
         if action is not None:
+            most = None if self._inputs is None else len(self._inputs) - 1
+            action = _checks.integer("action", action, 0, most)
             self.kalman.predict(None if self._inputs is None else self._inputs[action])
-        if observation[-1]:
-            z = observation[:-1].astype(np.float64)
-            self.kalman.update(z, self.sensing.noise(z) if self.sensing.range_noise else None)
-        return self.sensing.scale(self.kalman.x[: len(self.sensing.low)])
+        if look[m]:
+            self.kalman.update(look[:m], R)
+        return scaled(self.kalman.x[:m], *self._interval)

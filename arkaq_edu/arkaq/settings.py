@@ -7,6 +7,9 @@ from typing import Any
 
 from arkaq_edu import _checks
 
+#: At some thousand cycles a second this is more than two days.
+MOST_CYCLES = 10**9
+
 _GOAL: dict[str, Any] = {
     "patterns": 2000,
     "period": 50,
@@ -31,7 +34,7 @@ class TrainingSettings:
         ART's update factor eta (eq 4.6), in (0, 1]. With .6, one stream of 6,500 patterns gives
         all five counts of centers in the thesis within 15 %.
     patterns : int
-        The number of patterns in the segmentation phase.
+        The number of patterns in the segmentation phase, at most 10**9, as all numbers of cycles.
     period : int
         The supervisor resets the world after so many cycles of the segmentation phase, so that
         the patterns come from everywhere.
@@ -88,18 +91,24 @@ class TrainingSettings:
     cycle_reward: float = 0.0
 
     def __post_init__(self) -> None:
-        _checks.number("learning_rate", self.learning_rate, 0, 1, open_low=True)
+        self._number("learning_rate", 0, 1, open_low=True)
         for name in ("patterns", "period", "hold"):
-            _checks.integer(name, getattr(self, name), 1)
+            self._keep(name, _checks.integer(name, getattr(self, name), 1, MOST_CYCLES))
         for name in ("exploration", "exploitation"):
-            _checks.integer(name, getattr(self, name), 0)
-        _checks.number("gamma", self.gamma, 0, 1, open_low=True, open_high=True)
-        _checks.number("alpha_power", self.alpha_power, 0, 1)
-        _checks.number("alpha_least", self.alpha_least, 0, 1)
-        _checks.number("cold", self.cold, 0, open_low=True)
-        _checks.number("hot", self.hot, self.cold)
-        _checks.number("lost_reward", self.lost_reward)
-        _checks.number("cycle_reward", self.cycle_reward)
+            self._keep(name, _checks.integer(name, getattr(self, name), 0, MOST_CYCLES))
+        self._number("gamma", 0, 1, open_low=True, open_high=True)
+        self._number("alpha_power", 0, 1)
+        self._number("alpha_least", 0, 1)
+        self._number("cold", 0, _checks.LARGEST, open_low=True)
+        self._number("hot", self.cold, _checks.LARGEST)
+        self._number("lost_reward")
+        self._number("cycle_reward")
+
+    def _number(self, name: str, *bounds: float, **ends: bool) -> None:
+        self._keep(name, _checks.number(name, getattr(self, name), *bounds, **ends))
+
+    def _keep(self, name: str, value: float) -> None:
+        object.__setattr__(self, name, value)  # the settings are frozen for everybody else
 
     @classmethod
     def goal(cls, **changes: Any) -> TrainingSettings:
@@ -119,10 +128,12 @@ class TrainingSettings:
 
     def alpha(self, visit: int) -> float:
         """Return the learning rate of the n-th visit, n = 1, 2, ..."""
+        visit = _checks.integer("visit", visit, 1)
         return max(self.alpha_least, visit**-self.alpha_power)
 
     def temperature(self, progress: float) -> float:
         """Return the temperature at a fraction in [0, 1] of exploitation."""
+        progress = _checks.number("progress", progress, 0, 1)
         return self.hot * (self.cold / self.hot) ** progress
 
     def to_json(self) -> dict[str, Any]:

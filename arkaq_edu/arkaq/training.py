@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from tqdm.auto import tqdm
 
+from arkaq_edu import _checks
 from arkaq_edu.arkaq.automata import (
     GOAL_Q_LEARNING,
     GOAL_SEGMENTATION,
@@ -38,6 +39,19 @@ SEGMENTING, LEARNING, FINISHED = PHASES = "segmentation", "Q-learning", "finishe
 MISSES_BEFORE_GIVING_UP = 1000
 
 
+def require_task(agent: Arkaq, env: Any) -> None:
+    """Refuse what is not an environment, or one whose observations the agent does not measure."""
+    from gymnasium import Env
+
+    wanted = (len(agent.sensing.low) + 1,)
+    given = _checks.instance("env", env, Env).observation_space.shape
+    if given != wanted:
+        raise ValueError(
+            f"env must give observations of shape {wanted}, the measurements and whether there "
+            f"was a sighting, got {given}"
+        )
+
+
 class Phase:
     """What all phases share: the supervisor, who starts and ends episodes, and one cycle.
 
@@ -56,12 +70,6 @@ class Phase:
     def __init__(
         self, agent: Arkaq, env: gymnasium.Env, checkpoint: Checkpoint, progress: bool
     ) -> None:
-        wanted, given = (len(agent.sensing.low) + 1,), env.observation_space.shape
-        if given != wanted:
-            raise ValueError(
-                f"env must give observations of shape {wanted}, the measurements and whether there "
-                f"was a sighting, got {given}"
-            )
         self.agent, self.env, self.checkpoint = agent, env, checkpoint
         self.settings, self.estimator = agent.learning, agent.estimator
         self.bar = tqdm(
@@ -107,10 +115,11 @@ class Phase:
         """Act for one cycle and observe; return the reward."""
         self.observation, reward, self.terminated, self.truncated, info = self.env.step(action)
         self.pattern = self.estimator.observe(self.observation, action)
+        reward = _checks.number("reward", reward)
         self.cycles += 1
-        self.reward += float(reward)
+        self.reward += reward
         self.success = bool(info.get("is_success", False))
-        return float(reward)
+        return reward
 
 
 class Segmentation(Phase):

@@ -29,7 +29,7 @@ class BallApproachEnv(gymnasium.Env[np.ndarray, int]):
 
     ## Action space
 
-    ``Discrete(3)``. Each step is one footstep cycle (640 ms):
+    ``Discrete(3)``, an integer or an array of one. Each step is one footstep cycle (640 ms):
 
     | action | name | left, right footstep | effect |
     |---|---|---|---|
@@ -122,12 +122,12 @@ class BallApproachEnv(gymnasium.Env[np.ndarray, int]):
         patience: int = 10,
         render_mode: str | None = None,
     ) -> None:
-        if render_mode not in (None, "rgb_array"):
-            raise ValueError(f"render_mode must be None or 'rgb_array', got {render_mode!r}")
+        if render_mode is not None:
+            _checks.choice("render_mode", render_mode, self.metadata["render_modes"])
         self.render_mode = render_mode
         self.patience = _checks.integer("patience", patience, 1)
         self.supervisor = Supervisor(near, far, placement)
-        self.camera = camera or Camera()
+        self.camera = _checks.instance("camera", Camera() if camera is None else camera, Camera)
         self.world = World(legs=legs)
         self.trail: list[tuple[float, float]] = []
         self.action_space = spaces.Discrete(len(FOOTSTEPS))  # type: ignore[assignment]
@@ -135,17 +135,30 @@ class BallApproachEnv(gymnasium.Env[np.ndarray, int]):
         high = np.array([_MAX_DISTANCE, _MAX_ORIENTATION, 1.0], dtype=np.float32)
         self.observation_space = spaces.Box(low, high, dtype=np.float32)
 
+    @property
+    def settings(self) -> dict[str, Any]:
+        """All that shapes the episodes, by name: what a training's file keeps of its task."""
+        return {
+            "near": self.supervisor.near,
+            "far": self.supervisor.far,
+            "placement": self.supervisor.placement,
+            "patience": self.patience,
+            "legs": vars(self.world.legs),
+            "camera": vars(self.camera),
+        }
+
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
         """Start an episode; see Starting state above."""
-        super().reset(seed=seed)
+        super().reset(seed=_checks.seed("seed", seed))
         self.world.rng = self.np_random
-        place = dict(options or {})
+        place = dict(_checks.instance("options", {} if options is None else options, dict))
         if place:
             distance, orientation = place.pop("distance", None), place.pop("orientation", None)
             if place or distance is None or orientation is None:
-                raise ValueError(f"options must hold distance and orientation, got {options!r}")
+                given = _checks.shown(options)
+                raise ValueError(f"options must hold distance and orientation, got {given}")
             self.supervisor.place(
                 self.world,
                 _checks.number("distance", distance, 200, MAX_BALL_DISTANCE),
@@ -159,9 +172,8 @@ class BallApproachEnv(gymnasium.Env[np.ndarray, int]):
 
     def step(self, action: int) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """Walk one footstep cycle."""
-        if action not in (0, 1, 2):
-            raise ValueError(f"action must be 0, 1 or 2, got {action!r}")
-        self.world.cycle(*FOOTSTEPS[int(action)])
+        action = _checks.integer("action", action, 0, len(FOOTSTEPS) - 1)
+        self.world.cycle(*FOOTSTEPS[action])
         self.trail.append(self.world.pose[:2])
         observation = self._observe()
         verdict = self.supervisor.judge(self.world)

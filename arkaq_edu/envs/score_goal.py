@@ -52,7 +52,7 @@ class ScoreGoalEnv(gymnasium.Env[np.ndarray, int]):
 
     ## Action space
 
-    ``Discrete(3)``:
+    ``Discrete(3)``, an integer or an array of one:
 
     | action | name | left, right footstep | effect |
     |---|---|---|---|
@@ -168,15 +168,12 @@ class ScoreGoalEnv(gymnasium.Env[np.ndarray, int]):
         patience: int = 30,
         render_mode: str | None = None,
     ) -> None:
-        if render_mode not in (None, *self.metadata["render_modes"]):
-            raise ValueError(
-                f"render_mode must be None, 'rgb_array' or 'rgb_array_list', got {render_mode!r}"
-            )
+        if render_mode is not None:
+            _checks.choice("render_mode", render_mode, self.metadata["render_modes"])
         if isinstance(goal_distance, str):
             if goal_distance not in STARTS:
-                raise ValueError(
-                    f"goal_distance must be 'near', 'far' or a number, got {goal_distance!r}"
-                )
+                given = _checks.shown(goal_distance)
+                raise ValueError(f"goal_distance must be 'near', 'far' or a number, got {given}")
             self.start = STARTS[goal_distance]
         else:
             distance = _checks.number(
@@ -186,7 +183,7 @@ class ScoreGoalEnv(gymnasium.Env[np.ndarray, int]):
         self.render_mode = render_mode
         self.patience = _checks.integer("patience", patience, 1)
         self.supervisor = GoalSupervisor(self.start.distance)
-        self.camera = camera or Camera()
+        self.camera = _checks.instance("camera", Camera() if camera is None else camera, Camera)
         self.world = World(legs=legs, head=head, kick=kick)
         self.ball_trail: list[tuple[float, float]] = []
         self.action_space = spaces.Discrete(len(ACTIONS))  # type: ignore[assignment]
@@ -197,16 +194,30 @@ class ScoreGoalEnv(gymnasium.Env[np.ndarray, int]):
         if render_mode == "rgb_array_list":
             self.world.watch = self._film
 
+    @property
+    def settings(self) -> dict[str, Any]:
+        """All that shapes the episodes, by name: what a training's file keeps of its task."""
+        return {
+            "goal_distance": self.start.distance,
+            "orientation": [self.start.least, self.start.most],
+            "patience": self.patience,
+            "legs": vars(self.world.legs),
+            "head": vars(self.world.head),
+            "kick": vars(self.world.kick),
+            "camera": vars(self.camera),
+        }
+
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
         """Start an episode; see Starting state above."""
-        super().reset(seed=seed)
+        super().reset(seed=_checks.seed("seed", seed))
         self.world.rng = self.np_random
-        place = dict(options or {})
+        place = _checks.instance("options", {} if options is None else options, dict)
         if place:
             if place.keys() != {"orientation"}:
-                raise ValueError(f"options must hold orientation alone, got {options!r}")
+                given = _checks.shown(options)
+                raise ValueError(f"options must hold orientation alone, got {given}")
             orientation = _checks.number("orientation", place["orientation"], -0.5, 0.5)
         else:
             u = self.np_random.uniform(-1.0, 1.0)
@@ -219,8 +230,7 @@ class ScoreGoalEnv(gymnasium.Env[np.ndarray, int]):
 
     def step(self, action: int) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """Turn, or kick and wait until the ball is at rest."""
-        if action not in (TURN_LEFT, TURN_RIGHT, KICK):
-            raise ValueError(f"action must be 0, 1 or 2, got {action!r}")
+        action = _checks.integer("action", action, 0, len(ACTIONS) - 1)
         if action == KICK:
             self.supervisor.set_ball(self.world)
             self.ball_trail = motion.kick(self.world)

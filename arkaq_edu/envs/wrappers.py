@@ -14,8 +14,17 @@ import numpy as np
 from gymnasium import spaces
 from gymnasium.utils import RecordConstructorArgs
 
+from arkaq_edu import _checks
 from arkaq_edu.field import pitch
 from arkaq_edu.field.camera import HEIGHT, WIDTH
+
+
+def _task(env: Any) -> gymnasium.Env:
+    """Return `env` if it is one of the tasks on the field, or refuse it."""
+    if not isinstance(env, gymnasium.Env) or not hasattr(env.unwrapped, "world"):
+        given = _checks.shown(env)
+        raise ValueError(f"env must be BallApproach-v0 or ScoreGoal-v0, got {given}")
+    return env
 
 
 class PixelObservation(gymnasium.ObservationWrapper, RecordConstructorArgs):
@@ -48,7 +57,7 @@ class PixelObservation(gymnasium.ObservationWrapper, RecordConstructorArgs):
 
     def __init__(self, env: gymnasium.Env, classes: bool = False) -> None:
         RecordConstructorArgs.__init__(self, classes=classes)
-        gymnasium.ObservationWrapper.__init__(self, env)
+        gymnasium.ObservationWrapper.__init__(self, _task(env))
         self.classes = bool(classes)
         self.observation_space = (
             spaces.Box(0, len(pitch.PALETTE) - 1, (HEIGHT, WIDTH), np.uint8)
@@ -90,7 +99,7 @@ class FullState(gymnasium.ObservationWrapper, RecordConstructorArgs):
 
     def __init__(self, env: gymnasium.Env) -> None:
         RecordConstructorArgs.__init__(self)
-        gymnasium.ObservationWrapper.__init__(self, env)
+        gymnasium.ObservationWrapper.__init__(self, _task(env))
         x, y = pitch.CARPET_LENGTH / 2, pitch.CARPET_WIDTH / 2
         high = np.array([x, y, np.pi, x, y], dtype=np.float32)
         self.observation_space = spaces.Box(-high, high, dtype=np.float32)

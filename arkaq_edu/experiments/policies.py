@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from arkaq_edu import _checks
 from arkaq_edu.arkaq import Arkaq
 
 #: Chooses an action from the observation and the info, which holds the true state.
@@ -19,7 +21,7 @@ _N_ACTIONS = 3  # of either task
 
 
 def greedy(agent: Arkaq) -> Policy:
-    """Return the greedy policy of an agent.
+    """Return the greedy policy of an agent. It can be pickled, so it travels to other processes.
 
     Examples
     --------
@@ -28,16 +30,20 @@ def greedy(agent: Arkaq) -> Policy:
     >>> choose(np.array([1000.0, 0.3, 1.0]), {})  # the ball is to the left
     1
     """
+    return partial(_begin_greedy, agent)
 
-    def begin(episode: int) -> Choice:
-        agent.reset()
-        return lambda observation, info: agent.act(observation)
 
-    return begin
+def _begin_greedy(agent: Arkaq, episode: int) -> Choice:
+    agent.reset()
+    return partial(_act, agent)
+
+
+def _act(agent: Arkaq, observation: NDArray[np.floating], info: dict[str, Any]) -> int:
+    return agent.act(observation)
 
 
 def at_random(seed: int = 0) -> Policy:
-    """Return the policy that draws its actions at random.
+    """Return the policy that draws its actions at random. It can be pickled.
 
     Examples
     --------
@@ -45,9 +51,27 @@ def at_random(seed: int = 0) -> Policy:
     >>> choose(np.zeros(3), {}) in (0, 1, 2)
     True
     """
+    return partial(_begin_at_random, _checks.integer("seed", seed))
 
-    def begin(episode: int) -> Choice:
-        rng = np.random.default_rng([seed, episode])
-        return lambda observation, info: int(rng.integers(_N_ACTIONS))
 
-    return begin
+def _begin_at_random(seed: int, episode: int) -> Choice:
+    return partial(_draw, np.random.default_rng([seed, episode]))
+
+
+def _draw(rng: np.random.Generator, observation: NDArray[np.floating], info: dict[str, Any]) -> int:
+    return int(rng.integers(_N_ACTIONS))
+
+
+def always(choose: Choice) -> Policy:
+    """Return the policy that chooses in every episode alike. It can be pickled if `choose` can.
+
+    Examples
+    --------
+    >>> always(max)(3) is max
+    True
+    """
+    return partial(_same, choose)
+
+
+def _same(choose: Choice, episode: int) -> Choice:
+    return choose

@@ -482,9 +482,13 @@ class Camera:
         >>> camera.pixel(World(rng=0), 1000.0, 0.0, camera.height)  # straight ahead of the lens
         (104.0, 80.0)
         """
-        angle, up = orientation - world.pan, height - self.height
+        distance = _checks.number("distance", distance)
+        angle = _checks.number("orientation", orientation) - world.pan
+        up = _checks.number("height", height) - self.height
         ahead, left = distance * math.cos(angle), distance * math.sin(angle)
         depth = ahead * math.cos(self.tilt) - up * math.sin(self.tilt)
+        if depth == 0.0:
+            raise ValueError(f"distance must not be that of the lens itself, got {distance:g}")
         rise = ahead * math.sin(self.tilt) + up * math.cos(self.tilt)
         return WIDTH / 2 - FOCAL_LENGTH * left / depth, HEIGHT / 2 - FOCAL_LENGTH * rise / depth
 
@@ -506,6 +510,11 @@ class Camera:
         >>> round(Camera().distance_error(4100.0, pixels=0.1))
         209
         """
+        if np.ndim(distance):
+            distance = _checks.array("distance", distance, (None,) * np.ndim(distance))
+        else:
+            distance = _checks.number("distance", distance)
+        pixels = _checks.number("pixels", pixels)
         return pixels * distance**2 / (FOCAL_LENGTH * pitch.BALL_RADIUS)
 
 
@@ -518,11 +527,16 @@ def fit_power(distance: NDArray[np.float64], error: NDArray[np.float64]) -> tupl
     >>> round(exponent, 6), round(factor * 3000**exponent, 3)
     (2.0, 90.0)
     """
+    distance = _checks.array("distance", distance, (None,))
+    error = _checks.array("error", error, distance.shape)
+    for name, x in {"distance": distance, "error": error}.items():
+        if len(x) < 2 or not (x > 0).all():
+            raise ValueError(f"{name} must hold at least two numbers > 0, got {_checks.shown(x)}")
     exponent, logarithm = np.polyfit(np.log(distance), np.log(error), 1)
     return float(exponent), float(np.exp(logarithm))
 
 
 def _checked(colors: np.ndarray) -> np.ndarray:
-    if colors.shape != (HEIGHT, WIDTH):
-        raise ValueError(f"colors must have shape ({HEIGHT}, {WIDTH}), got {colors.shape}")
-    return colors
+    if np.shape(colors) != (HEIGHT, WIDTH):
+        raise ValueError(f"colors must have shape ({HEIGHT}, {WIDTH}), got {np.shape(colors)}")
+    return _checks.integers("colors", colors, 0, len(pitch.PALETTE) - 1)

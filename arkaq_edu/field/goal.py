@@ -46,6 +46,7 @@ class GoalSupervisor:
 
     def place(self, world: World, orientation: float) -> None:
         """Put the robot before the goal so that it sees the middle at an orientation (rad)."""
+        orientation = _checks.number("orientation", orientation)
         x = pitch.LENGTH / 2 - self.distance
         world.reset((x, 0.0, -orientation), (x, _WAITING))
 

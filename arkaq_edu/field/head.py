@@ -16,9 +16,9 @@ class Head:
     reach : float
         The largest pan to either side (rad), in [0, 1.6]. With 0 it always looks straight ahead.
     speed : float
-        Speed of the pan (rad/s).
+        Speed of the pan (rad/s), in (0, 100].
     settling : float
-        How long the head sways after it has arrived (s).
+        How long the head sways after it has arrived (s), in [0, 10].
     blurs : bool
         Whether pictures taken while it moves or sways are useless (thesis 5.1.3.2). If False, the
         robot need not wait before it looks.
@@ -35,6 +35,8 @@ class Head:
     blurs: bool = True
 
     def __post_init__(self) -> None:
-        _checks.number("reach", self.reach, 0, 1.6)
-        _checks.number("speed", self.speed, 0, 100, open_low=True)
-        _checks.number("settling", self.settling, 0, 10)
+        speed = _checks.number("speed", self.speed, 0, 100, open_low=True)
+        object.__setattr__(self, "reach", _checks.number("reach", self.reach, 0, 1.6))
+        object.__setattr__(self, "speed", speed)
+        object.__setattr__(self, "settling", _checks.number("settling", self.settling, 0, 10))
+        _checks.instance("blurs", self.blurs, bool)

@@ -58,8 +58,8 @@ class Kick:
     swerve: float = 140.0
 
     def __post_init__(self) -> None:
-        _checks.number("spread", self.spread, 0, 12)
-        _checks.number("swerve", self.swerve, 0, 200)
+        object.__setattr__(self, "spread", _checks.number("spread", self.spread, 0, 12))
+        object.__setattr__(self, "swerve", _checks.number("swerve", self.swerve, 0, 200))
 
 
 def build_paw(pose: tuple[float, float, float]) -> pymunk.Body:

@@ -19,6 +19,8 @@ from arkaq_edu.field.world import LONGEST_FOOTSTEP, World
 
 # The normal gait turns this much in a cycle: 131 degrees a second.
 LARGEST_TURN = math.radians(84)
+# Longer walks are typing errors: on the carpet the robot would only push against a wall.
+LONGEST_WALK, MOST_TURNS, MOST_CYCLES = 100_000.0, 100, 10_000
 
 
 def footsteps(ahead: float, turn: float) -> tuple[float, float]:
@@ -31,6 +33,7 @@ def footsteps(ahead: float, turn: float) -> tuple[float, float]:
     >>> footsteps(0.0, -0.2)  # opposite footsteps turn on the spot
     (18.0, -18.0)
     """
+    ahead, turn = _checks.number("ahead", ahead), _checks.number("turn", turn)
     half = turn * pitch.ROBOT_WIDTH / 2
     return ahead - half, ahead + half
 
@@ -43,6 +46,7 @@ def gait(left: float, right: float) -> tuple[float, float]:
     >>> gait(91.0, 109.0)
     (100.0, 0.1)
     """
+    left, right = _checks.number("left", left), _checks.number("right", right)
     return (left + right) / 2, (right - left) / pitch.ROBOT_WIDTH
 
 
@@ -58,7 +62,7 @@ def arc_path(
     left, right : float
         Footsteps of each cycle (mm).
     cycles : int
-        Number of cycles.
+        Number of cycles, in [0, 10000].
 
     Returns
     -------
@@ -70,7 +74,8 @@ def arc_path(
     >>> arc_path((0.0, 0.0, 0.0), 100.0, 100.0, 2)[-1]
     array([200.,   0.])
     """
-    x, y, heading = pose
+    x, y, heading = _checks.array("pose", pose, (3,)).tolist()
+    cycles = _checks.integer("cycles", cycles, 0, MOST_CYCLES)
     share = np.linspace(0.0, cycles, 8 * cycles + 1)
     ahead, turn = gait(left, right)
     # A chord over an angle a is sin(a / 2) / (a / 2) times as long as its arc.
@@ -97,14 +102,14 @@ def arc(world: World, distance: float, angle: float) -> None:
     world : World
         The field. At least one whole cycle passes in it.
     distance : float
-        Length of the arc (mm).
+        Length of the arc (mm), in [-100000, 100000]: 100 m.
     angle : float
-        The turn over the whole arc (rad, to the left).
+        The turn over the whole arc (rad, to the left), at most 100 full turns.
 
     Raises
     ------
     ValueError
-        If either is not finite.
+        If either is out of range.
 
     Examples
     --------
@@ -116,8 +121,8 @@ def arc(world: World, distance: float, angle: float) -> None:
     >>> round(x, -1), round(y, -1), round(heading, 1), round(world.time, 2)
     (600.0, 600.0, 1.6, 3.84)
     """
-    _checks.number("distance", distance)
-    _checks.number("angle", angle)
+    distance = _checks.number("distance", distance, -LONGEST_WALK, LONGEST_WALK)
+    angle = _checks.number("angle", angle, -2 * math.pi * MOST_TURNS, 2 * math.pi * MOST_TURNS)
     left, right = footsteps(distance, angle)
     longest = max(abs(left), abs(right)) / LONGEST_FOOTSTEP
     cycles = max(1, math.ceil(max(longest, abs(angle) / LARGEST_TURN) - 1e-9))
@@ -144,7 +149,7 @@ def footstep_path(world: World, left: float, right: float, cycles: int) -> NDArr
     (3, 3)
     """
     poses = [world.pose]
-    for _ in range(_checks.integer("cycles", cycles, 1)):
+    for _ in range(_checks.integer("cycles", cycles, 1, MOST_CYCLES)):
         world.cycle(left, right)
         poses.append(world.pose)
     return np.array(poses)
@@ -158,7 +163,7 @@ def straight_walk(world: World, cycles: int = 20) -> NDArray[np.float64]:
     world : World
         It is reset first.
     cycles : int
-        Number of footstep cycles, >= 1.
+        Number of footstep cycles, in [1, 10000].
 
     Returns
     -------
@@ -175,6 +180,7 @@ def straight_walk(world: World, cycles: int = 20) -> NDArray[np.float64]:
     >>> bool(y > 0 > heading)  # drifts to the left, turns to the right
     True
     """
+    cycles = _checks.integer("cycles", cycles, 1, MOST_CYCLES)
     world.reset(ROBOT_START, (0.0, 1500.0))  # the ball is out of the way
     return footstep_path(world, 100.0, 100.0, cycles) - ROBOT_START
 

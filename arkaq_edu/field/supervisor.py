@@ -28,7 +28,7 @@ class Verdict(NamedTuple):
 
 
 def random_place(
-    rng: np.random.Generator,
+    rng: np.random.Generator | int | None,
     near: float = MIN_BALL_DISTANCE,
     far: float = MAX_BALL_DISTANCE,
     placement: Placement = "area",
@@ -37,9 +37,11 @@ def random_place(
 
     Parameters
     ----------
-    rng : numpy.random.Generator
+    rng : numpy.random.Generator or int, optional
+        The random numbers, or their seed.
     near, far : float
-        The nearest and farthest distance (mm).
+        The nearest and farthest distance (mm), in [0, 4100]. With the placement "thesis", they
+        are at least 1 mm apart.
     placement : {"area", "thesis"}
         "thesis": eq 5.1, a uniform depth z, then a uniform x across the view triangle at that
         depth. The density of balls on the field falls as 1 / z. "area": uniform on the field, so
@@ -49,6 +51,11 @@ def random_place(
     -------
     distance, orientation : float
         In mm and rad.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range or unknown.
 
     References
     ----------
@@ -61,6 +68,8 @@ def random_place(
     >>> 600 <= distance <= 4100, abs(orientation) <= 0.4965
     (True, True)
     """
+    rng = _checks.generator("rng", rng)
+    near, far = _interval(near, far, placement, 0.0)
     half = FIELD_OF_VIEW / 2
     if placement == "area":
         distance = math.sqrt(rng.uniform(near**2, far**2))
@@ -71,6 +80,15 @@ def random_place(
         distance = math.hypot(z, x)
         if near <= distance <= far:
             return distance, math.atan2(x, z)
+
+
+def _interval(near: float, far: float, placement: Placement, least: float) -> tuple[float, float]:
+    """Return `near` and `far` as numbers between which a ball can be placed."""
+    _checks.choice("placement", placement, ("area", "thesis"))
+    near = _checks.number("near", near, least, MAX_BALL_DISTANCE)
+    # "thesis" draws places until one lies between the two, so it needs some room there.
+    room = 1.0 if placement == "thesis" else 0.0
+    return near, _checks.number("far", far, near + room, MAX_BALL_DISTANCE)
 
 
 class Supervisor:
@@ -98,10 +116,7 @@ class Supervisor:
     def __init__(
         self, near: float = 600.0, far: float = MAX_BALL_DISTANCE, placement: Placement = "area"
     ) -> None:
-        self.near = _checks.number("near", near, MIN_BALL_DISTANCE, MAX_BALL_DISTANCE)
-        self.far = _checks.number("far", far, self.near, MAX_BALL_DISTANCE)
-        if placement not in ("area", "thesis"):
-            raise ValueError(f"placement must be 'area' or 'thesis', got {placement!r}")
+        self.near, self.far = _interval(near, far, placement, MIN_BALL_DISTANCE)
         self.placement = placement
 
     def reset(self, world: World, rng: np.random.Generator) -> None:
@@ -111,8 +126,9 @@ class Supervisor:
 
     def place(self, world: World, distance: float, orientation: float) -> None:
         """Put the robot at its start and the ball at a distance (mm) and orientation (rad)."""
+        distance = _checks.number("distance", distance)
         x, y, heading = ROBOT_START
-        angle = heading + orientation
+        angle = heading + _checks.number("orientation", orientation)
         ball = x + distance * math.cos(angle), y + distance * math.sin(angle)
         world.reset(ROBOT_START, ball)
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from PIL import Image, ImageDraw
 
+from arkaq_edu import _checks
 from arkaq_edu.field import pitch
 from arkaq_edu.field.camera import FIELD_OF_VIEW
 from arkaq_edu.field.kick import PAW_RADIUS
@@ -16,6 +18,7 @@ from arkaq_edu.field.world import World
 
 # The picture is drawn larger and then shrunk, which smooths every edge.
 _OVERSAMPLING = 3
+MOST_PIXELS = 4000  # along each side of a picture
 EXTENT = (
     -pitch.CARPET_LENGTH / 2,
     pitch.CARPET_LENGTH / 2,
@@ -85,6 +88,7 @@ def body_outline(x: float, y: float, heading: float) -> np.ndarray:
     >>> body_outline(0.0, 0.0, 0.0)[-1]
     array([158.5,   0. ])
     """
+    x, y, heading = _checks.array("x, y and heading", (x, y, heading), (3,)).tolist()
     length, width = pitch.ROBOT_LENGTH / 2, pitch.ROBOT_WIDTH / 2
     neck = length - width / 2
     corners = [[neck, width], [-length, width], [-length, -width], [neck, -width], [length, 0.0]]
@@ -107,7 +111,8 @@ def bird_view(
     world : World
         The field as it is now.
     width : int
-        Width of the picture (pixels); its height follows from `region`.
+        Width of the picture (pixels), in [1, 4000]; its height follows from `region` and has the
+        same bounds.
     trail : sequence of (x, y)
         The path of the robot so far (mm).
     sight : bool
@@ -122,12 +127,18 @@ def bird_view(
     ndarray of uint8, shape (height, width, 3)
         The first row is at the highest y; pass `region` to ``imshow`` as the extent.
 
+    Raises
+    ------
+    ValueError
+        If an argument is out of range.
+
     Examples
     --------
     >>> bird_view(World(rng=0), width=300).shape
     (200, 300, 3)
     """
-    canvas = _Canvas(width, region)
+    walked, rolled = _path("trail", trail), _path("ball_trail", ball_trail)
+    canvas = _Canvas(*_frame(width, region))
     _draw_pitch(canvas)
     x, y, heading = world.pose
     if sight:
@@ -136,15 +147,31 @@ def bird_view(
             (x + MAX_BALL_DISTANCE * math.cos(a), y + MAX_BALL_DISTANCE * math.sin(a)) for a in rim
         ]
         canvas.polygon([(x, y), *wedge], (255, 255, 255, 38))
-    if len(trail) > 1:
-        canvas.line(trail, (250, 225, 90), 28)
-    if len(ball_trail) > 1:
-        canvas.line(ball_trail, (240, 105, 40, 150), 22)
+    if len(walked) > 1:
+        canvas.line(walked, (250, 225, 90), 28)
+    if len(rolled) > 1:
+        canvas.line(rolled, (240, 105, 40, 150), 22)
     _draw_ball(canvas, *world.ball)
     if world.paw is not None:
         canvas.disc(*world.paw, PAW_RADIUS, _LEG, _DARK, 8)
     _draw_robot(canvas, x, y, heading, world.pan)
     return canvas.finish()
+
+
+def _frame(width: Any, region: Any) -> tuple[int, tuple[float, float, float, float]]:
+    """Return the width and region of a picture, or refuse them by name."""
+    width = _checks.integer("width", width, 1, MOST_PIXELS)
+    left, right, bottom, top = _checks.array("region", region, (4,)).tolist()
+    if not (left < right and bottom < top):
+        raise ValueError(f"region must be left < right, bottom < top, got {_checks.shown(region)}")
+    height = width * (top - bottom) / (right - left)
+    _checks.number("region (its height in pixels)", height, 1, MOST_PIXELS)
+    return width, (left, right, bottom, top)
+
+
+def _path(name: str, points: Any) -> list[Any]:
+    """Return the points of a path, or refuse them by name."""
+    return _checks.array(name, points, (None, 2)).tolist() if len(points) else []
 
 
 def _draw_pitch(canvas: _Canvas) -> None:

@@ -20,6 +20,8 @@ _STEP = CYCLE / SUBSTEPS
 # A curved footstep is walked as this many straight chords.
 _CHORDS = 8
 LONGEST_FOOTSTEP = 194.0  # mm
+FASTEST_BALL = 10_000.0  # mm/s; a faster one could pass through a post between two steps
+LONGEST_STAND = 3600.0  # s
 
 
 @dataclass(frozen=True)
@@ -50,9 +52,9 @@ class Legs:
     variation: float = 0.02
 
     def __post_init__(self) -> None:
-        _checks.number("slide", self.slide, -1, 1)
-        _checks.number("pull", self.pull, -0.01, 0.01)
-        _checks.number("variation", self.variation, 0, 0.5)
+        object.__setattr__(self, "slide", _checks.number("slide", self.slide, -1, 1))
+        object.__setattr__(self, "pull", _checks.number("pull", self.pull, -0.01, 0.01))
+        object.__setattr__(self, "variation", _checks.number("variation", self.variation, 0, 0.5))
 
 
 def _check_on_carpet(name: str, x: float, y: float) -> None:
@@ -122,8 +124,10 @@ class World:
         head: Head | None = None,
         kick: Kick | None = None,
     ) -> None:
-        self.rng = np.random.default_rng(rng)
-        self.legs, self.head, self.kick = legs or Legs(), head or Head(), kick or Kick()
+        self.rng = _checks.generator("rng", rng)
+        self.legs = _checks.instance("legs", Legs() if legs is None else legs, Legs)
+        self.head = _checks.instance("head", Head() if head is None else head, Head)
+        self.kick = _checks.instance("kick", Kick() if kick is None else kick, Kick)
         self.watch: Callable[[], None] | None = None
         self.reset((-2500.0, 0.0, 0.0), (0.0, 0.0))
 
@@ -167,11 +171,8 @@ class World:
         ValueError
             If a footstep is longer than the legs allow.
         """
-        limit = LONGEST_FOOTSTEP
-        if not (abs(left) <= limit and abs(right) <= limit):
-            raise ValueError(
-                f"footsteps must be in [-{limit:g}, {limit:g}] mm, got {left!r} and {right!r}"
-            )
+        left = _checks.number("left", left, -LONGEST_FOOTSTEP, LONGEST_FOOTSTEP)
+        right = _checks.number("right", right, -LONGEST_FOOTSTEP, LONGEST_FOOTSTEP)
         variation = self.legs.variation
         left *= 1 + variation * self.rng.standard_normal()
         right *= 1 + variation * self.rng.standard_normal()
@@ -193,9 +194,10 @@ class World:
         self.time += CYCLE
 
     def stand(self, seconds: float) -> None:
-        """Stand still for a time (s), rounded up to whole physics steps."""
+        """Stand still for a time (s) of at most an hour, rounded up to whole physics steps."""
+        seconds = _checks.number("seconds", seconds, 0, LONGEST_STAND)
         self._halt()
-        for _ in range(math.ceil(_checks.number("seconds", seconds, 0) / _STEP)):
+        for _ in range(math.ceil(seconds / _STEP)):
             self._advance(_STEP)
 
     def _halt(self) -> None:
@@ -234,6 +236,7 @@ class World:
         ValueError
             If that is not on the carpet.
         """
+        x, y = _checks.array("ball", (x, y), (2,), allow_nan=True).tolist()
         _check_on_carpet("ball", x, y)
         self.space.remove(self._ball, *self._ball.shapes, *self._ball.constraints)
         self._ball = bodies.add_ball(self.space, x, y)
@@ -271,8 +274,15 @@ class World:
             self.watch()
 
     def roll_ball(self, velocity: tuple[float, float]) -> None:
-        """Set the ball rolling at `velocity` (mm/s)."""
+        """Set the ball rolling at `velocity` (mm/s), at most 10,000 mm/s.
+
+        Raises
+        ------
+        ValueError
+            If it is faster.
+        """
         vx, vy = _checks.array("velocity", velocity, (2,)).tolist()
+        _checks.number("velocity (its length)", math.hypot(vx, vy), 0, FASTEST_BALL)
         self._ball.velocity = vx, vy
 
     @property

@@ -174,4 +174,4 @@ def test_an_unknown_press_is_refused(panel):
     with pytest.raises(ValueError, match="name must be one of step, 5 steps"):
         panel.controls["presses"].press("fly")
     panel.controls["presses"].value = [Press("step", 500, 0, 0)]
-    assert "footsteps must be in" in str(panel.error)
+    assert "left must be a number in [-194, 194], got 500" in str(panel.error)

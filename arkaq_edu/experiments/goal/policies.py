@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 
 from arkaq_edu.arkaq import Sensing
 from arkaq_edu.envs.score_goal import KICK, TURN_LEFT, TURN_RIGHT
-from arkaq_edu.experiments.policies import Policy
+from arkaq_edu.experiments.policies import Policy, always
 from arkaq_edu.experiments.policies import at_random as at_random
 from arkaq_edu.experiments.policies import greedy as greedy
 
@@ -25,12 +26,11 @@ def planner() -> Policy:
     >>> choose(np.zeros(2), {"orientation": 0.3}), choose(np.zeros(2), {"orientation": 0.01})
     (0, 2)
     """
-    turn = Sensing.goal().B[0][TURN_RIGHT]
+    return always(partial(_aim, float(Sensing.goal().B[0][TURN_RIGHT])))
 
-    def choose(observation: NDArray[np.floating], info: dict[str, Any]) -> int:
-        orientation = info["orientation"]
-        if abs(orientation) <= turn / 2:
-            return KICK
-        return TURN_LEFT if orientation > 0 else TURN_RIGHT
 
-    return lambda episode: choose
+def _aim(turn: float, observation: NDArray[np.floating], info: dict[str, Any]) -> int:
+    orientation = info["orientation"]
+    if abs(orientation) <= turn / 2:
+        return KICK
+    return TURN_LEFT if orientation > 0 else TURN_RIGHT

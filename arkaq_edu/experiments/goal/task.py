@@ -143,7 +143,8 @@ def train(
     """
     start_of(goal_distance)
     vigilance = VIGILANCE[goal_distance] if vigilance is None else vigilance
-    agent = Arkaq(vigilance, task="goal", learning=learning or _LEARNING[goal_distance], rng=seed)
+    learning = _LEARNING[goal_distance] if learning is None else learning
+    agent = Arkaq(vigilance, task="goal", learning=learning, rng=seed)
     look_around = make_look_around(goal_distance, agent.learning.period)
     agent.segment(look_around, checkpoint=checkpoint, progress=progress)
     return agent.learn(make_task(goal_distance), checkpoint=checkpoint, progress=progress)
