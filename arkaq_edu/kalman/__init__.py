@@ -9,7 +9,8 @@ The thesis's section 2.5, eq 2.49 to 2.59; its use on the ball is section 5.2.
 - `batch`: `kalman_batch`, many tracks at once;
 - `models`: `constant_velocity`;
 - `consistency`: `chi_square_band`, the NIS expected of a correct filter;
-- `noise`: `fit_noise`, Q and R from a recorded track.
+- `noise`: `fit_noise`, Q and R from a recorded track;
+- `walk`: a simulated walk to the ball, and its filter.
 """
 
 from arkaq_edu.kalman.batch import kalman_batch

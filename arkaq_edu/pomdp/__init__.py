@@ -10,7 +10,7 @@ Thesis 2.3. One idea a file:
 - `pruning`: which vectors are needed; `linear_program`: the compiled loops of pruning;
 - `backup`: one step of value iteration (2.19); `solve`: exact value iteration;
 - `point_based`: bounds on the value, where an exact solution is out of reach;
-- `agent`: keep the belief and act on it.
+- `agent`: keep the belief and act on it; `turns`: a history of actions and observations by name.
 """
 
 from arkaq_edu.pomdp.agent import BeliefAgent
