@@ -8,7 +8,7 @@ In ARKAQ only the segmentation of the world is.)
 - `optimality`, `performance`: what "best" means, and how well something was learned;
 - `bandits`, `choice`, `schedules`: exploration against exploitation;
 - `prediction`, `q_learning`, `training`: learning from experience (`compiled`: the fast twins);
-- `floor`, `machines`: what the explorers show of the course's floor, and of a game on four machines.
+- `floor`, `machines`: the course's floor and a game on four machines, as explored.
 """
 
 from arkaq_edu.mdp.bandits import UCB, Bandit, Boltzmann, EpsilonGreedy, Play, Random, play
