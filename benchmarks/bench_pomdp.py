@@ -13,6 +13,9 @@ All problems are solved to 1e-6 without a horizon, except for those in LIMITS. F
 is a change from one step to the next, for us a proved distance from V*. "apart" is the difference
 of the two values of the start. pomdp-py tries all policy trees from one belief, so only a short
 horizon of the tiger can be compared.
+
+The last rows are the update of a belief beside one line of NumPy, and the bounds for Tag and
+RockSample(5,4): at first, and after BOUND seconds.
 """
 
 from __future__ import annotations
@@ -25,15 +28,26 @@ import subprocess
 import sys
 import tempfile
 import time
+import timeit
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 from arkaq_edu._paths import course_folder
-from arkaq_edu.pomdp import problem, read_pomdp, solve_pomdp
+from arkaq_edu.pomdp import (
+    POMDP,
+    belief_update,
+    problem,
+    read_pomdp,
+    solve_point_based,
+    solve_pomdp,
+)
 
-ROUNDS, SLOW, PATIENCE = 7, 5.0, 300.0
+sys.path.insert(0, str(course_folder()))
+from tests.pomdp.large import rock_sample_5_4, tag
+
+ROUNDS, SLOW, PATIENCE, BOUND = 7, 5.0, 300.0, 60.0
 # Horizon and tolerance of published problems that no solver solves to 1e-6 without a horizon.
 LIMITS: dict[str, tuple[int | None, float]] = {
     "4x3.95": (8, 1e-6),
@@ -111,6 +125,37 @@ def trees() -> None:
     print(f"{'    pomdp-py, from one':46} {peer:9.4f} s   we: {ratio:,.1f} times")
 
 
+def updates() -> None:
+    """Compare the update of a belief, checks included, with one line of NumPy."""
+    rng = np.random.default_rng(0)
+    for S in (2, 5, 12, 36):
+        T, O = rng.dirichlet(np.ones(S), (3, S)), rng.dirichlet(np.ones(4), (3, S))  # noqa: E741
+        pomdp = POMDP(T, O, np.zeros((S, 3)), 0.9)
+        b, rounds = belief_update(pomdp, pomdp.start, 0, 0), []
+
+        def one_line(b: np.ndarray, T: np.ndarray = T, O: np.ndarray = O) -> np.ndarray:  # noqa: E741
+            joint = O[0, :, 0] * (b @ T[0])
+            return joint / joint.sum()
+
+        for _ in range(ROUNDS):
+            ours = timeit.timeit(lambda: belief_update(pomdp, b, 0, 0), number=5000)  # noqa: B023
+            rounds.append((ours, timeit.timeit(lambda: one_line(b), number=5000)))  # noqa: B023
+        mine, line = (statistics.median(r[k] for r in rounds) / 5000 * 1e6 for k in (0, 1))
+        ratio = statistics.median(r[1] / r[0] for r in rounds)
+        print(f"{f'belief update, {S} states':46} {mine:9.2f} us")
+        print(f"{'    one line of numpy':46} {line:9.2f} us  we: {ratio:,.2f} times")
+
+
+def bounds() -> None:
+    """Time the bounds of two large problems."""
+    solve_point_based(problem("tiger"))  # compile, or load from the cache
+    for name, make in (("tag", tag), ("rock_sample 5,4", rock_sample_5_4)):
+        pomdp = make()
+        first = seconds(lambda: solve_point_based(pomdp, max_backups=0))  # noqa: B023
+        found = solve_point_based(pomdp, max_backups=10**9, seconds=BOUND)
+        print(f"{name:16} first bounds {first:6.2f} s; after {BOUND:g} s {found}")
+
+
 def main(arguments: list[str]) -> None:
     folder = arguments[0] if arguments else os.environ.get("POMDP_FILES")
     where = Path(folder) if folder else course_folder() / "data" / "pomdp"
@@ -125,6 +170,8 @@ def main(arguments: list[str]) -> None:
             child.kill()
             print(f"{path.stem:14} stopped after {PATIENCE:g} s")
     trees()
+    updates()
+    bounds()
 
 
 if __name__ == "__main__":

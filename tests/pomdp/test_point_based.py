@@ -203,6 +203,29 @@ def test_the_compiled_bounds_are_the_plain_ones(seed):
     assert best.tolist() == (beliefs @ vectors.T).argmax(axis=1).tolist()
 
 
+@settings(max_examples=30, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_points_and_vectors_that_add_nothing_are_dropped(seed):
+    rng = np.random.default_rng(seed)
+    S, N = int(rng.integers(1, 4)), int(rng.integers(1, 9))
+    points = rng.dirichlet(np.full(S, 0.5), size=N)
+    points[rng.random(N) < 0.3] = points[0]
+    below = -rng.random(N).round(1)
+    rows = sparse.csr_array(points)
+    found = point_kernels.needed((rows.indptr, rows.indices, rows.data), below, S)
+    zero, far = np.zeros(S), np.full((1, S), 9.0)
+    for b in [*points, *rng.dirichlet(np.ones(S), size=20)]:
+        one, other = (sawtooth(b, zero, points[x], below[x], far) for x in (found, slice(None)))
+        assert one == pytest.approx(other, abs=1e-12)
+    alphas = rng.integers(0, 4, size=(N, S)).astype(float)
+    by = np.arange(N)
+    point_kernels.dominated(alphas, by)
+    for i, j in enumerate(by):
+        assert (alphas[i] <= alphas[j]).all()
+    kept = alphas[by == np.arange(N)]
+    assert (kept[:, np.newaxis] <= kept).all(axis=2).sum() == len(kept)
+
+
 def test_a_sparse_model_has_the_bounds_of_the_dense_one():
     pomdp = corridor_of(12)
     T, O = ([sparse.csr_array(M) for M in table] for table in (pomdp.T, pomdp.O))  # noqa: E741
