@@ -1,8 +1,8 @@
-"""Q-learning and planning against other libraries, run in turn in one process.
+"""Q-learning against other libraries, run in turn in one process.
 
     python benchmarks/bench_q_learning.py
 
-A peer that is not installed (mushroom-rl, quantecon, pymdptoolbox) is left out. "Limit" is the same
+A peer that is not installed (mushroom-rl) is left out. "Limit" is the same
 arithmetic in one plain compiled loop. Each number is the median of several rounds. A round runs our
 code and every peer once, so that a busy machine slows all of them alike; the ratio is the median of
 the ratios of the rounds.
@@ -18,7 +18,7 @@ from collections.abc import Callable
 import numpy as np
 
 from arkaq_edu._compiled import kernel
-from arkaq_edu.mdp import MDP, QLearner, policy_iteration, train, value_iteration
+from arkaq_edu.mdp import MDP, QLearner, train
 
 N_STATES, N_ACTIONS, GAMMA = 337, 3, 0.9
 ROUNDS = 7
@@ -118,6 +118,7 @@ def q_updates() -> None:
     learner = QLearner(N_STATES, N_ACTIONS, alpha=0.5, gamma=GAMMA, rng=0)
     rows = list(zip(s.tolist(), a.tolist(), r.tolist(), s_next.tolist(), strict=True))
     model = world()
+    cumulative = model.T.cumsum(axis=2)
 
     def updates() -> None:
         update = learner.update
@@ -134,8 +135,7 @@ def q_updates() -> None:
     def training_limit() -> None:
         u = learner.rng.random((n, 3))
         limit_of_training(
-            learner.Q, learner.visits, model.cumulative, model.R, model.ends, u, 0.5, GAMMA,
-            np.empty(n),
+            learner.Q, learner.visits, cumulative, model.R, model.ends, u, 0.5, GAMMA, np.empty(n)
         )  # fmt: skip
 
     replay_limit(), training_limit()  # compiled now
@@ -154,36 +154,9 @@ def q_updates() -> None:
     )  # fmt: skip
 
 
-def planning() -> None:
-    model = world(200, 4)
-    peers = {}
-    try:
-        from quantecon.markov import DiscreteDP
-
-        ddp = DiscreteDP(model.R, model.T.transpose(1, 0, 2).copy(), GAMMA)
-        peers["quantecon modified policy it."] = (
-            1,
-            lambda: ddp.solve(method="modified_policy_iteration", epsilon=1e-6),
-        )
-    except ImportError:
-        pass
-    try:
-        from mdptoolbox.mdp import PolicyIteration
-
-        peers["pymdptoolbox policy iteration"] = (
-            1,
-            lambda: PolicyIteration(model.T, model.R, GAMMA).run(),
-        )
-    except ImportError:
-        pass
-    compare("policy iteration, 200 x 4", 1, lambda: policy_iteration(model), **peers)
-    compare("value iteration to 1e-6, 200 x 4", 1, lambda: value_iteration(model, 1e-6), **peers)
-
-
 def main() -> None:
     warnings.simplefilter("ignore")
     q_updates()
-    planning()
 
 
 if __name__ == "__main__":

@@ -49,16 +49,18 @@ def weight(gap, temperature):
 
 
 @kernel
-def boltzmann(q, temperature, u):
+def boltzmann(Q, s, temperature, u):
     """Draw an action by its Boltzmann probability (eq 3.2)."""
-    top = q.max()
+    top = Q[s, 0]
+    for a in range(1, Q.shape[1]):
+        top = max(top, Q[s, a])
     total = 0.0
-    for a in range(len(q)):
-        total += weight(q[a] - top, temperature)
+    for a in range(Q.shape[1]):
+        total += weight(Q[s, a] - top, temperature)
     below, last = 0.0, 0
-    for a in range(len(q)):
+    for a in range(Q.shape[1]):
         before = below
-        below += weight(q[a] - top, temperature)
+        below += weight(Q[s, a] - top, temperature)
         if u * total < below:
             return a
         if below > before:
@@ -67,14 +69,17 @@ def boltzmann(q, temperature, u):
 
 
 @kernel
-def greedy(q, u):
+def greedy(Q, s, u):
     """Draw one of the best actions, each of n with probability 1/n (eq 3.3)."""
-    top, ties = q.max(), 0
-    for a in range(len(q)):
-        ties += q[a] == top
+    top = Q[s, 0]
+    for a in range(1, Q.shape[1]):
+        top = max(top, Q[s, a])
+    ties = 0
+    for a in range(Q.shape[1]):
+        ties += Q[s, a] == top
     skip = int(u * ties)
-    for a in range(len(q)):
-        if q[a] == top:
+    for a in range(Q.shape[1]):
+        if Q[s, a] == top:
             if skip == 0:
                 return a
             skip -= 1
@@ -130,7 +135,7 @@ def train(
     s = np.searchsorted(starts, u[0, 0], side="right")
     for t in range(len(u)):
         temperature = temperatures[min(t, len(temperatures) - 1)]
-        a = boltzmann(Q[s], temperature, u[t, 1]) if temperature > 0 else greedy(Q[s], u[t, 1])
+        a = boltzmann(Q, s, temperature, u[t, 1]) if temperature > 0 else greedy(Q, s, u[t, 1])
         s_next = draw(sums, successors, first, a * len(R) + s, u[t, 2])
         discount = 0.0 if ends[s_next] else gamma
         changes[t] = update(Q, visits, s, a, R[s, a], s_next, discount, alphas)

@@ -254,12 +254,13 @@ class QLearner:
             raise ValueError(f"the columns must have one length, got shapes {lengths}") from None
         if together[0].ndim != 1:
             raise ValueError(f"the columns must have shape (N,), got {together[0].shape}")
-        forbidden = self.Q[together[0], together[1]] == -np.inf
-        best = self.Q[together[3]].max(axis=1)
-        if (forbidden | (best == -np.inf)).any():
-            i = int((forbidden | (best == -np.inf)).argmax())
-            s_i, a_i, s_next_i = (int(together[k][i]) for k in (0, 1, 3))
-            raise ValueError(f"{_refusal(s_i, a_i, s_next_i, best[i])} at ({i},)")
+        if np.isneginf(self.Q).any():
+            best = self.Q.max(axis=1)
+            wrong = np.isneginf(self.Q[together[0], together[1]]) | np.isneginf(best[together[3]])
+            if wrong.any():
+                i = int(wrong.argmax())
+                s_i, a_i, s_next_i = (int(together[k][i]) for k in (0, 1, 3))
+                raise ValueError(f"{_refusal(s_i, a_i, s_next_i, best[s_next_i])} at ({i},)")
         changes = np.empty(len(together[0]))
         # The loop itself repeats a single `terminated` or `n_steps`: that saves two copies.
         arrays = map(np.ascontiguousarray, (*together[:4], *columns[4:]))
@@ -491,7 +492,10 @@ def _flag(name: str, value: Any) -> bool:
     """Return a truth value: true, false, 1 or 0, also from an array of one element."""
     if value is True or value is False:
         return value
-    return bool(integer(name, int(value) if isinstance(value, np.bool_) else value, 0, 1))
+    flags = _flags(name, value)
+    if flags.size != 1:
+        raise ValueError(f"{name} must be true or false, got {shown(value)}")
+    return bool(flags.item())
 
 
 def _flags(name: str, value: ArrayLike) -> NDArray[np.bool_]:

@@ -1,4 +1,6 @@
+import copy
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -121,6 +123,20 @@ def test_the_same_seed_is_the_same_game(strategy):
         (lambda: Bandit(P).pull(-1, rng=0), r"arms must hold integers in \[0, 3\], got -1"),
         (lambda: EpsilonGreedy(1.2), r"epsilon must be a number in \[0, 1\], got 1.2"),
         (lambda: Boltzmann(0), r"temperature must be a number in \(0, inf\], got 0"),
+        (lambda: UCB("1"), r"c must be a number in \[0, inf\), got '1'"),
+        (lambda: EpsilonGreedy("0.1"), r"epsilon must be a number in \[0, 1\], got '0.1'"),
+        (lambda: Boltzmann(None), r"temperature must be a number in \(0, inf\], got None"),
+        (lambda: Bandit(P).pull(0, rng=0.5), "rng must be a numpy Generator, an integer >= 0 or"),
+        (
+            lambda: UCB().choose([[1, 2]], [[0.5]], 0),
+            r"means must have shape \(1, 2\), got \(1, 1\)",
+        ),
+        (lambda: UCB().choose([1, 2], [0.5, 0.5], 0), r"counts must have shape \(N, k\), each"),
+        (lambda: UCB().choose([[-1]], [[0.5]], 0), "counts must hold integers >= 0, got -1"),
+        (
+            lambda: play(Bandit(P), UCB(), pulls=10**9, rng=0),
+            "pulls and players must need at most 2,147,483,648 bytes, got 8,000,000,000 bytes",
+        ),
         (lambda: UCB(-1), r"c must be a number in \[0, inf\), got -1"),
         (lambda: UCB(math.inf), r"c must be a number in \[0, inf\), got inf"),
         (lambda: play(Bandit(P), UCB(), pulls=0, rng=0), "pulls must be an integer >= 1, got 0"),
@@ -133,3 +149,32 @@ def test_the_same_seed_is_the_same_game(strategy):
 def test_bad_arguments_are_refused(call, message):
     with pytest.raises(ValueError, match=message):
         call()
+
+
+@pytest.mark.parametrize("strategy", [Random(), EpsilonGreedy(), Boltzmann(), UCB()])
+def test_lists_and_seeds_are_as_good_as_arrays_and_generators(strategy):
+    counts, means = [[3, 0], [1, 1], [0, 9]], [[0.2, 0.0], [1.0, 0.0], [0.0, 0.4]]
+    chosen = strategy.choose(counts, means, 4)
+    again = strategy.choose(np.array(counts), np.array(means), np.random.default_rng(4))
+    assert chosen.tolist() == again.tolist()
+
+
+def test_what_was_checked_is_what_is_used():
+    assert EpsilonGreedy(np.array(0)) == EpsilonGreedy(0.0)
+    assert type(UCB(np.float32(1)).c) is type(Boltzmann(1).temperature) is float
+
+
+def test_a_strategy_that_chooses_a_machine_that_does_not_exist_is_refused():
+    class Blind:
+        def choose(self, counts, means, rng):
+            return self.arms
+
+    for Blind.arms in ([4], [-1], [0.5], ["0"]):
+        with pytest.raises(ValueError, match="arms must hold integers"):
+            play(Bandit(P), Blind(), pulls=1, rng=0)
+
+
+def test_the_machines_of_a_copy_cannot_be_changed_either():
+    for bandit in (Bandit(P), copy.deepcopy(Bandit(P)), pickle.loads(pickle.dumps(Bandit(P)))):
+        with pytest.raises(ValueError, match="read-only"):
+            bandit.p[0] = 1.0

@@ -47,8 +47,30 @@ def test_shared_argmax_shares():
         (lambda: argmax_shared([], rng=0), "values must hold at least one action in a row"),
         (lambda: softmax([0.0, math.nan], 1.0), "values must hold finite numbers or -inf, got nan"),
         (lambda: softmax([0.0], math.nan), "temperature must be a number in"),
+        (
+            lambda: softmax([], 1.0),
+            r"values must hold at least one action in a row, got shape \(0,\)",
+        ),
+        (
+            lambda: softmax(5.0, 1.0),
+            r"values must hold at least one action in a row, got shape \(\)",
+        ),
+        (lambda: softmax([[1.0], [-math.inf]], 1.0), "values must allow an action in each row"),
+        (lambda: softmax([[1.0], [1.0, 2.0]], 1.0), "values must be an array of numbers"),
+        (lambda: argmax_shared([math.inf, 0.0], rng=0), "values must hold finite numbers or -inf"),
+        (lambda: argmax_shared([0.0], rng="0"), "rng must be a numpy Generator"),
     ],
 )
 def test_bad_arguments_are_refused(call, message):
     with pytest.raises(ValueError, match=message):
         call()
+
+
+@pytest.mark.parametrize("temperature", [5e-324, 0.3, 1e100, math.inf])
+def test_an_action_that_is_not_allowed_is_never_chosen(temperature):
+    values = [[0.0, -math.inf, 1.0], [-math.inf, -math.inf, -7.0]]
+    with np.errstate(all="raise", under="ignore"):
+        p = softmax(values, temperature)
+    assert p[0, 1] == 0 and p[1].tolist() == [0, 0, 1]
+    np.testing.assert_array_equal(p[0, [0, 2]], softmax([0.0, 1.0], temperature))
+    assert argmax_shared(values, rng=0).tolist() == [2, 2]

@@ -109,8 +109,10 @@ def test_training_on_a_model_is_the_loop_of_figure_4_4_to_the_last_bit(seed, tem
     T = rng.dirichlet(np.full(S, 0.5), size=(A, S))
     T[:, -1] = np.eye(S)[-1]
     R = np.vstack([rng.normal(size=(S - 1, A)), np.zeros(A)])
+    R[0, 2] = -np.inf
     mdp = MDP(T, R, 0.9, start=rng.dirichlet(np.ones(S)))
     one, many = (QLearner(S, A, alpha, gamma=0.9, rng=seed) for _ in range(2))
+    one.Q[0, 2] = -np.inf
     u = np.random.default_rng(seed).random((n, 3))
     one.rng = Given(u[:, 1])
     plain = exploit(

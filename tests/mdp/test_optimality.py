@@ -6,11 +6,12 @@ from hypothesis import strategies as st
 from arkaq_edu.mdp import (
     MDP,
     average_reward,
+    best_chains,
     delayed_rewards,
     discounted,
     finite_horizon,
 )
-from tests.mdp.worlds import all_policies, random_mdp, seeds
+from tests.mdp.worlds import all_policies, as_sparse, random_mdp, seeds
 
 
 def test_figure_2_2_to_the_printed_digits():
@@ -95,10 +96,19 @@ def test_average_is_the_limit_of_the_discounted_value_per_step(seed):
     np.testing.assert_allclose((1 - gamma) * discounted(near), average_reward(mdp), atol=1e-3)
 
 
+def test_the_average_reward_of_a_sparse_model_with_forbidden_actions():
+    swap, stay = [[0, 1], [1, 0]], [[1, 0], [0, 1]]
+    mdp = MDP([swap, stay], [[3, -np.inf], [0, 1]], gamma=1.0)
+    for model in (mdp, as_sparse(mdp)):
+        assert average_reward(model).tolist() == [[1.5, -np.inf], [1.5, 1.5]]
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
         (lambda: delayed_rewards([0], [1.0]), "delays must hold integers >= 1, got 0"),
+        (lambda: delayed_rewards([10**6], [1.0]), "delays must need at most 2,147,483,648 bytes"),
+        (lambda: best_chains([1.0, np.nan, 2.0]), "earned must hold finite numbers, got nan"),
         (lambda: delayed_rewards([1, 2], [1.0]), r"rewards must have shape \(2,\), got \(1,\)"),
     ],
 )

@@ -12,7 +12,7 @@ from arkaq_edu.mdp import (
     simulate,
     td0,
 )
-from tests.mdp.worlds import corridor
+from tests.mdp.worlds import as_sparse, corridor, random_mdp
 
 
 @pytest.mark.parametrize("learn", [monte_carlo, td0])
@@ -82,8 +82,8 @@ def test_returns_are_discounted_sums(r, gamma):
     np.testing.assert_allclose(discounted_returns(r, gamma), expected, atol=1e-9)
 
 
-def test_simulated_episodes_are_walks_of_the_model():
-    mdp = corridor()
+@pytest.mark.parametrize("mdp", [corridor(), as_sparse(corridor())], ids=["dense", "sparse"])
+def test_simulated_episodes_are_walks_of_the_model(mdp):
     rng = np.random.default_rng(1)
     for _ in range(50):
         episode = simulate(mdp, [0] * 7, rng=rng)
@@ -109,8 +109,18 @@ def test_simulated_episodes_are_walks_of_the_model():
             "max_steps must be an integer >= 1",
         ),
         (lambda m: discounted_returns([np.nan], 0.5), "r must hold finite numbers, got nan"),
+        (lambda m: simulate(m, [0] * 7, rng=1.5), "rng must be a numpy Generator"),
+        (lambda m: simulate(m, [0] * 7, max_steps=10**9, rng=0), "max_steps must need at most"),
+        (lambda m: td0([], 10**10, 0.5), "n_states and n_actions must need at most"),
     ],
 )
 def test_bad_arguments_are_refused(call, message):
     with pytest.raises(ValueError, match=message):
         call(corridor())
+
+
+def test_a_dense_and_a_sparse_model_give_the_same_episodes():
+    mdp = random_mdp(8, max_states=9)
+    chances = np.random.default_rng(0).dirichlet(np.ones(mdp.n_actions), size=mdp.n_states)
+    one, other = (simulate(m, chances, max_steps=200, rng=4) for m in (mdp, as_sparse(mdp)))
+    assert one.s.tolist() == other.s.tolist() and one.r.tolist() == other.r.tolist()

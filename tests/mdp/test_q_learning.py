@@ -9,9 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from arkaq_edu.mdp import (
-    QLearner,
-)
+from arkaq_edu.mdp import QLearner, compiled
 
 
 def optimal_q(T, R, gamma, sweeps=5000):
@@ -240,6 +238,8 @@ def test_restore_refuses_and_leaves_the_table_alone(change, message):
 
 
 def test_restore_names_what_is_missing():
+    with pytest.raises(ValueError, match="state must be a dict, got None"):
+        QLearner(1, 1, 0.5, 0.9).restore(None)
     with pytest.raises(ValueError, match="got no visits"):
         QLearner(1, 1, 0.5, 0.9).restore({"Q": [[0.0]], "rng": {}})
 
@@ -253,6 +253,10 @@ def test_restore_names_what_is_missing():
         ((3, 2, math.nan, 0.9), r"alpha must be a number in \[0, 1\], got nan"),
         ((3, 2, "1/n", 0.9), "alpha must be a number, '1/visits' or a callable, got '1/n'"),
         ((3, 2, 0.5, -0.1), r"gamma must be a number in \[0, 1\], got -0.1"),
+        (
+            (10**9, 2, 0.5, 0.9),
+            "n_states and n_actions must need at most 2,147,483,648 bytes, got 16,000,000,000",
+        ),
     ],
 )
 def test_constructor_refuses(arguments, message):
@@ -319,13 +323,22 @@ def test_numpy_scalars_and_whole_rewards_are_welcome():
         ),
         (([[0]], 0, 0.0, 0, False), r"the columns must have shape \(N,\), got \(1, 1\)"),
         ((0, 0, 0.0, 0, False, [1, 0]), r"n_steps must hold integers >= 1, got 0 at \(1,\)"),
+        ((0, 0, 0.0, 0, ["no"]), "terminated must hold integers, got"),
+        (
+            ([0, 1], 1, 0.0, 0, False),
+            r"a must be an action that state 1 allows, got 1 .* at \(1,\)",
+        ),
+        ((0, 0, 0.0, [0, 2], False), r"s_next must allow an action, .* in state 2 at \(1,\)"),
     ],
 )
 def test_replay_refuses_and_learns_nothing(columns, message):
     learner = QLearner(3, 2, alpha=0.5, gamma=0.9, initial=2.0)
+    learner.Q[1, 1] = -np.inf
+    learner.Q[2] = -np.inf
+    before = learner.Q.copy()
     with pytest.raises(ValueError, match=message):
         learner.replay(*columns)
-    assert (learner.Q == 2.0).all() and not learner.visits.any()
+    assert (before == learner.Q).all() and not learner.visits.any()
 
 
 def test_replay_of_nothing_changes_nothing():
@@ -358,3 +371,71 @@ def test_choices_name_a_value_that_is_no_number():
     for call in (learner.greedy, lambda s: learner.boltzmann(s, 1.0)):
         with pytest.raises(ValueError, match="Q must hold finite numbers"):
             call(0)
+
+
+@pytest.mark.parametrize("temperature", [5e-324, 0.3, math.inf])
+def test_what_is_not_allowed_is_never_drawn(temperature):
+    learner = QLearner(2, 4, alpha=0.5, gamma=0.9, rng=1)
+    learner.Q[0] = [-math.inf, 1.0, 1.0, -math.inf]
+    assert {learner.boltzmann(0, temperature) for _ in range(60)} == {1, 2}
+    assert {learner.greedy(0) for _ in range(60)} == {1, 2} == set(learner.unvisited(0).tolist())
+    assert {learner.explore(0) for _ in range(60)} == {1, 2}
+    learner.replay(0, [1, 2, 1], 0.0, 1, False)
+    assert {learner.explore(0) for _ in range(60)} == {1, 2}
+    learner.update(1, 0, 4.0, 0, n_steps=1)
+    assert learner.Q[1, 0] == 0.5 * (4 + 0.9 * learner.Q[0].max())
+    again = QLearner(2, 4, alpha=0.5, gamma=0.9)
+    again.restore(learner.state())
+    assert np.isneginf(again.Q[0, [0, 3]]).all()
+
+
+def test_a_state_that_allows_nothing_is_named():
+    learner = QLearner(2, 2, alpha=0.5, gamma=0.9)
+    learner.Q[1] = -math.inf
+    calls = [learner.greedy, learner.explore, lambda s: learner.boltzmann(s, 1.0)]
+    for call in calls:
+        with pytest.raises(ValueError, match=r"Q must allow an action in every state, .* state 1"):
+            call(1)
+    with pytest.raises(ValueError, match=r"s_next must allow an action, got only .* in state 1"):
+        learner.update(0, 0, 0.0, 1)
+    with pytest.raises(ValueError, match="s_next must allow"):
+        learner.update(1, 0, 0.0, 1, terminated=True)
+    learner.Q[1, 0] = 0.0
+    with pytest.raises(ValueError, match="a must be an action that state 1 allows, got 1"):
+        learner.update(1, 1, 0.0, 0)
+    assert not learner.visits.any()
+
+
+class Last(np.random.Generator):
+    """A generator that draws the largest number below 1."""
+
+    def random(self, size=None):
+        return math.nextafter(1, 0)
+
+
+@given(st.lists(st.floats(0, 3) | st.just(-math.inf), min_size=1, max_size=6))
+def test_the_last_draw_is_never_past_what_is_allowed(q):
+    learner = QLearner(1, len(q) + 1, 0.5, 0.9, rng=Last(np.random.PCG64(0)))
+    learner.Q[0] = [0.0, *q]
+    a = learner.boltzmann(0, 1.0)
+    assert learner.Q[0, a] > -math.inf
+    assert a == compiled.boltzmann(learner.Q, 0, 1.0, math.nextafter(1, 0))
+
+
+@pytest.mark.parametrize("yes", [True, np.True_, 1, np.array([True]), np.int64(1)])
+def test_an_end_can_be_told_in_many_ways(yes):
+    learner = QLearner(2, 1, alpha=1.0, gamma=0.5, initial=8.0)
+    learner.update(0, 0, 1.0, 1, terminated=yes)
+    assert learner.Q[0, 0] == 1.0
+    assert learner.replay([0], 0, 1.0, 1, np.atleast_1d(yes)).tolist() == [0.0]
+
+
+@pytest.mark.parametrize("schedule", [lambda n: "0.5", lambda n: None, lambda n: math.nan])
+def test_a_schedule_without_numbers_is_named(schedule):
+    learner = QLearner(2, 1, alpha=schedule, gamma=0.5)
+    with pytest.raises(ValueError, match="alpha"):
+        learner.replay([0, 0], 0, 1.0, 1, False)
+    with pytest.raises(ValueError, match=r"alpha\(1\) must be a number in \[0, 1\]"):
+        learner.update(0, 0, 1.0, 1)
+    with pytest.raises(ValueError, match="rng must be a numpy Generator"):
+        QLearner(2, 1, 0.5, 0.5, rng="0")

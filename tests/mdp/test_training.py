@@ -13,7 +13,7 @@ from arkaq_edu.mdp import (
     policy_iteration,
     train,
 )
-from tests.mdp.worlds import corridor, undiscounted_return
+from tests.mdp.worlds import as_sparse, corridor, undiscounted_return
 
 
 class Script(gymnasium.Env):
@@ -161,11 +161,47 @@ def test_training_calls_a_schedule_of_the_learning_rate():
     assert learner.Q[0, 0] == 4 + (8 - 4) / 4
 
 
+def test_training_never_tries_what_is_not_allowed_dense_or_sparse():
+    rng = np.random.default_rng(3)
+    T = rng.dirichlet(np.ones(5), size=(3, 5))
+    T[:, -1] = np.eye(5)[-1]
+    R = np.vstack([rng.normal(size=(4, 3)), np.zeros(3)])
+    R[[0, 1, 1, 3], [2, 0, 1, 0]] = -np.inf
+    tables = []
+    for model in (MDP(T, R, 0.9), as_sparse(MDP(T, R, 0.9))):
+        for temperature in (np.inf, 0.5, 0.0):
+            learner = QLearner(5, 3, "1/visits", 0.9, rng=1)
+            run = train(model, learner, 20_000, temperature=temperature)
+            assert not learner.visits[~model.allowed].any() and np.isfinite(run.changes).all()
+            assert (np.isneginf(learner.Q) == ~model.allowed).all()
+            tables.append(learner.Q.tobytes())
+            tried = learner.visits[:-1][model.allowed[:-1]] > 0
+            assert tried.all() or temperature == 0
+    assert tables[:3] == tables[3:]
+
+
+def bar(mdp, learner):
+    learner.Q[3] = -np.inf
+    return train(mdp, learner, 9)
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
         (lambda m, q: train(m, q, 0), "n_steps must be an integer >= 1, got 0"),
         (lambda m, q: train(m, q, 9, temperature=-1), "temperature must be a number in"),
+        (lambda m, q: train(m, q, 9, temperature="1"), "temperature must be a number in"),
+        (lambda m, q: train(m, q, 10**9), "n_steps must need at most 2,147,483,648 bytes"),
+        (
+            lambda m, q: bar(m, q),
+            "learner must allow an action in every state, got only -inf in state 3",
+        ),
+        (
+            lambda m, q: explore(
+                gymnasium.make("FrozenLake-v1"), QLearner(16, 4, 1.0, 0.9), seed=-1
+            ),
+            "seed must be an integer >= 0, got -1",
+        ),
         (
             lambda m, q: train(m, QLearner(2, 1, 1.0, 0.9), 9),
             r"learner must have a table of \(7, 1\)",
