@@ -159,11 +159,11 @@ def array(
         wanted = str(tuple("any" if s is None else s for s in shape or ())).replace("'any'", "any")
         raise ValueError(f"{name} must have shape {wanted}, got {x.shape}")
     # A NaN compares as False, so a missing entry is not "too large".
-    bad = np.abs(x) > LARGEST if allow_nan else ~(np.abs(x) <= LARGEST)
+    good = ~(np.abs(x) > LARGEST) if allow_nan else np.abs(x) <= LARGEST
     if allow_minus_infinity:
-        bad &= x != -np.inf
-    if np.count_nonzero(bad):  # faster than bad.any() on a small array
-        where = tuple(int(i) for i in np.argwhere(bad)[0])
+        good |= x == -np.inf
+    if np.count_nonzero(good) < x.size:  # faster than good.all() on a small array
+        where = tuple(int(i) for i in np.argwhere(~good)[0])
         allowed = "finite numbers" + " or NaN" * allow_nan + " or -inf" * allow_minus_infinity
         if math.isfinite(x[where]):
             allowed = f"numbers of at most {LARGEST:g} in magnitude"

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from sklearn.base import BaseEstimator, ClusterMixin
 from sklearn.utils.validation import check_array, check_is_fitted, validate_data
 
-from arkaq_edu._checks import array
+from arkaq_edu._checks import affordable, array
 
 Floats = NDArray[np.float64]
 Labels = NDArray[np.int64]
@@ -31,10 +31,23 @@ class Categories(ClusterMixin, BaseEstimator):
     _n: int
     labels_: Labels
     n_features_in_: int
+    _checked: Any  # the parameters as `_parameters` returned them, or None if they must be checked
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Set an attribute; if it is a parameter, it is checked before it is used."""
+        super().__setattr__(name, value)
+        if not name.startswith("_"):
+            self.__dict__["_checked"] = None
 
     def _parameters(self, n_features: int) -> Any:
         """Return the validated parameters as a NamedTuple."""
         raise NotImplementedError
+
+    def _valid(self) -> Any:
+        """Return the validated parameters; they are checked once, not for each pattern."""
+        if self._checked is None:
+            self._checked = self._parameters(self.n_features_in_)
+        return self._checked
 
     def _learn_rows(self, X: Floats, parameters: Any) -> tuple[Labels, int]:
         """Learn the rows of `X`; return their categories and the new number of categories."""
@@ -89,8 +102,8 @@ class Categories(ClusterMixin, BaseEstimator):
             As for `fit`.
         """
         if not self.__sklearn_is_fitted__():
-            return int(self.partial_fit([np.asarray(x)]).labels_[0])
-        return int(self._learn(self._pattern(x), self._parameters(self.n_features_in_))[0])
+            return int(self.partial_fit([array("x", x, (None,))]).labels_[0])
+        return int(self._learn(self._pattern(x), self._valid())[0])
 
     def predict(self, X: ArrayLike) -> Labels:
         """Return the category of each pattern; learn nothing.
@@ -115,7 +128,7 @@ class Categories(ClusterMixin, BaseEstimator):
         check_is_fitted(self)
         rows = self._patterns(X)
         validate_data(self, X, reset=False, skip_check_array=True)
-        return self._recall_rows(rows, self._parameters(self.n_features_in_))
+        return self._recall_rows(rows, self._valid())
 
     def category(self, x: ArrayLike) -> int:
         """Return the category of one pattern of shape (n_features,), in microseconds.
@@ -124,7 +137,7 @@ class Categories(ClusterMixin, BaseEstimator):
         """
         if not self.__sklearn_is_fitted__():
             check_is_fitted(self)  # raises; too slow to call every time
-        return int(self._recall_rows(self._pattern(x), self._parameters(self.n_features_in_))[0])
+        return int(self._recall_rows(self._pattern(x), self._valid())[0])
 
     @property
     def cluster_centers_(self) -> Floats:
@@ -153,13 +166,16 @@ class Categories(ClusterMixin, BaseEstimator):
                 setattr(self, name, np.empty((0, rows.shape[1])))
             self._counts, self._n = np.empty(0, np.int64), 0
         self.labels_ = self._learn(rows, parameters)
+        self._checked = parameters
         self._resize(self._n)
         return self
 
     def _learn(self, X: Floats, parameters: Any) -> Labels:
         if self._n + len(X) > len(self._counts):  # each pattern may found a category
             self._resize(max(self._n + len(X), 2 * self._n))
-        labels, self._n = self._learn_rows(X, parameters)
+        labels, n = self._learn_rows(X, parameters)
+        if n > self._n:
+            self._n = n
         return labels
 
     def _resize(self, capacity: int) -> None:
@@ -171,7 +187,13 @@ class Categories(ClusterMixin, BaseEstimator):
 
     def _patterns(self, X: ArrayLike) -> Floats:
         """Return `X` as validated rows."""
-        rows = check_array(X, dtype=np.float64, order="C", estimator=self, input_name="X")
+        affordable("X", getattr(X, "shape", ()))
+        try:
+            rows = check_array(X, dtype=np.float64, order="C", estimator=self, input_name="X")
+        except (TypeError, ValueError, OverflowError) as refusal:
+            kind = TypeError if isinstance(refusal, TypeError) else ValueError
+            raise kind(f"X must hold patterns as rows of finite numbers: {refusal}") from None
+        array("X", X, rows.shape)  # refuses what scikit-learn lets pass: masks, text, huge numbers
         # Kernels are compiled for arrays that can be written to.
         return np.require(self._admit(rows), requirements=["C", "W"])
 

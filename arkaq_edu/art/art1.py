@@ -200,7 +200,7 @@ class ART1(Categories):
         I = self._pattern(x)[0]
         nodes: list[int] = []
         plain = getattr(search, "py_func", search)
-        winner = plain(I, self._centers, self._n, self._parameters(len(I)), nodes)
+        winner = plain(I, self._centers, self._n, self._valid(), nodes)
         expected = np.vstack([self.cluster_centers_, np.ones(len(I)), np.zeros(len(I))])
         received = np.append(self.bottom_up_ @ I, [np.nan, np.nan])
         steps = []
@@ -221,8 +221,8 @@ class ART1(Categories):
     @property
     def bottom_up_(self) -> Floats:
         """The bottom-up traces, shape (n_clusters, n_features)."""
-        templates = self.cluster_centers_
-        return self.L * templates / (self.L - 1 + templates.sum(axis=1, keepdims=True))
+        templates, L = self.cluster_centers_, self._valid().L
+        return L * templates / (L - 1 + templates.sum(axis=1, keepdims=True))
 
     def _admit(self, X: Floats) -> Floats:
         if self.binarize is not None:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from sklearn.utils.validation import check_is_fitted
 
-from arkaq_edu._checks import number
+from arkaq_edu._checks import number, shown
 from arkaq_edu._compiled import kernel
 from arkaq_edu.art._estimator import Categories, Floats, Labels
 from arkaq_edu.art.vectors import change, dot, norm, unit
@@ -354,7 +354,7 @@ class ART2(Categories):
         import pandas as pd
 
         check_is_fitted(self)
-        k, states = self._parameters(self.n_features_in_), list[tuple]()
+        k, states = self._valid(), list[tuple]()
         I = unit(self._pattern(x)[0])
         plain = getattr(present, "py_func", present)
         winner, _ = plain(I, self._centers, self._bottom_up, self._n, k, states)
@@ -373,7 +373,7 @@ class ART2(Categories):
     @property
     def cluster_centers_(self) -> Floats:
         """The expected directions, ``(1 - d) z_J``, shape (n_clusters, n_features)."""
-        return (1.0 - self.d) * self._centers[: self._n]
+        return (1.0 - self._valid().d) * self._centers[: self._n]
 
     @property
     def top_down_(self) -> Floats:
@@ -402,8 +402,8 @@ class ART2(Categories):
         c, d = number("c", self.c, 0, 1, **inside), number("d", self.d, 0, 1, **inside)
         if c * d / (1 - d) > 1 + 1e-12:
             raise ValueError(f"c * d / (1 - d) must be <= 1, got {c * d / (1 - d):g}")
-        if self.signal not in ("linear", "smooth"):
-            raise ValueError(f"signal must be 'linear' or 'smooth', got {self.signal!r}")
+        if not isinstance(self.signal, str) or self.signal not in ("linear", "smooth"):
+            raise ValueError(f"signal must be 'linear' or 'smooth', got {shown(self.signal)}")
         even = 1 / math.sqrt(n_features)  # a feature's activity where all are equal
         theta = even / 2
         if self.theta is not None:

@@ -8,10 +8,12 @@ from typing import NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from arkaq_edu._checks import array, integer, number
+from arkaq_edu._checks import LARGEST, array, integer, number, shown
 from arkaq_edu._compiled import kernel
 from arkaq_edu.art._estimator import Categories, Floats, Labels
 from arkaq_edu.art.index import Index, add, build, nearest, nearest_of_all, remove
+
+MOST_COUNTED = 2**53  # larger counts are not exact as floats
 
 
 class Parameters(NamedTuple):
@@ -82,7 +84,7 @@ class EuclideanART(Categories):
 
     Parameters
     ----------
-    vigilance : float in [1e-150, 1e150], default=0.1
+    vigilance : float in [1e-100, 1e100], default=0.1
         Distance below which a pattern belongs to a center, in the units of the patterns.
     learning_rate : float in (0, 1] or "count", default=0.5
         Update factor eta. The thesis never gives it; its counts of centers suggest about 0.5.
@@ -192,10 +194,10 @@ class EuclideanART(Categories):
                 f"centers must have at least one row and one column, got {places.shape}"
             )
         taken = array("counts", counts, (len(places),))
-        if (taken < 1).any() or (taken % 1 != 0).any():
-            raise ValueError(f"counts must be integers >= 1, got {counts!r}")
+        if not ((1 <= taken) & (taken <= MOST_COUNTED) & (taken % 1 == 0)).all():
+            raise ValueError(f"counts must be integers in [1, 2**53], got {shown(counts)}")
         self.n_features_in_ = places.shape[1]
-        self._parameters(self.n_features_in_)
+        self._valid()
         self._centers, self._counts, self._n = places, taken.astype(np.int64), len(places)
         self._resize(self._n)
         self.labels_ = np.empty(0, np.int64)
@@ -203,21 +205,21 @@ class EuclideanART(Categories):
 
     def _parameters(self, n_features: int) -> Parameters:
         # Squares of distances stay in the range of a float between these limits.
-        vigilance = number("vigilance", self.vigilance, 1e-150, 1e150)
+        vigilance = number("vigilance", self.vigilance, 1 / LARGEST, LARGEST)
         limit = sys.maxsize
         if self.max_clusters is not None:
             limit = integer("max_clusters", self.max_clusters, 1)
-        if self.learning_rate == "count":
-            return Parameters(vigilance, 0.0, limit)
-        if isinstance(self.learning_rate, str):
+        if not isinstance(self.learning_rate, str):
+            eta = number("learning_rate", self.learning_rate, 0, 1, open_low=True)
+            return Parameters(vigilance, eta, limit)
+        if self.learning_rate != "count":
             allowed = "a number in (0, 1] or 'count'"
-            raise ValueError(f"learning_rate must be {allowed}, got {self.learning_rate!r}")
-        eta = number("learning_rate", self.learning_rate, 0, 1, open_low=True)
-        return Parameters(vigilance, eta, limit)
+            raise ValueError(f"learning_rate must be {allowed}, got {shown(self.learning_rate)}")
+        return Parameters(vigilance, 0.0, limit)
 
     def _resize(self, capacity: int) -> None:
         super()._resize(capacity)
-        self._index = build(self._centers, self._n, self.vigilance)
+        self._index = build(self._centers, self._n, self._valid().vigilance)
 
     def _indexed(self, vigilance: float) -> Index:
         """Return the index of the centers, built anew if the vigilance has changed."""

@@ -6,7 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import Voronoi
 
-from arkaq_edu import _checks
+from arkaq_edu._checks import array, integer, integers
+
+FARTHEST = 4.0  # along an axis: well inside the ring
 
 
 def voronoi_cells(
@@ -19,7 +21,7 @@ def voronoi_cells(
     Parameters
     ----------
     centers : array_like, shape (n, 2)
-        Points of the square, n >= 1.
+        Distinct points, n >= 1, with coordinates in [-4, 4].
 
     Returns
     -------
@@ -28,14 +30,23 @@ def voronoi_cells(
     pairs : array of int, shape (m, 2)
         Indices of centers whose cells share a border.
 
+    Raises
+    ------
+    ValueError
+        For centers of the wrong shape, too far out, or equal.
+
     Examples
     --------
     >>> polygons, pairs = voronoi_cells([[0, -0.5], [0, 0.5]])
     >>> len(polygons), pairs.tolist()
     (2, [[0, 1]])
     """
-    centers = _checks.array("centers", centers, (None, 2))
+    centers = array("centers", centers, (None, 2))
     n = len(centers)
+    if n == 0 or np.abs(centers).max() > FARTHEST or len(np.unique(centers, axis=0)) < n:
+        raise ValueError(
+            f"centers must be distinct points within {FARTHEST:g} of 0, at least one, got {n}"
+        )
     # A ring of far points closes the outer cells. The square is 2.8 across and the ring is at
     # least 10 away, so no point of the square is nearer to the ring than to a center.
     angles = np.arange(8) * np.pi / 4
@@ -55,7 +66,7 @@ def six_colors(n: int, pairs: NDArray[np.intp]) -> list[int]:
     Parameters
     ----------
     n : int
-        Number of cells.
+        Number of cells, >= 0.
     pairs : array of int, shape (m, 2)
         Neighbors, as `voronoi_cells` returns them.
 
@@ -64,11 +75,20 @@ def six_colors(n: int, pairs: NDArray[np.intp]) -> list[int]:
     list of n int
         Numbers from 0 to 5.
 
+    Raises
+    ------
+    ValueError
+        If `pairs` do not come from a map in the plane.
+
     Examples
     --------
     >>> six_colors(3, np.array([[0, 1], [1, 2]]))
     [0, 1, 2]
     """
+    n = integer("n", n)
+    pairs = integers("pairs", pairs, 0, n - 1)
+    if pairs.ndim != 2 or pairs.shape[1] != 2:
+        raise ValueError(f"pairs must have shape (any, 2), got {pairs.shape}")
     neighbors: list[list[int]] = [[] for _ in range(n)]
     for i, j in pairs.tolist():
         neighbors[i].append(j)
@@ -82,6 +102,8 @@ def six_colors(n: int, pairs: NDArray[np.intp]) -> list[int]:
             left[j] -= 1
             if left[j] == 5:
                 ready.append(j)
+    if len(taken_away) < n:
+        raise ValueError("pairs must be those of a map in the plane, got more neighbors than fit")
     colors = [-1] * n
     for i in reversed(taken_away):
         used = {colors[j] for j in neighbors[i]}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from arkaq_edu import _checks
+from arkaq_edu._checks import array, shown
 from arkaq_edu.art.art2a import ART2A
 from arkaq_edu.art.euclidean import EuclideanART
 
@@ -21,11 +21,16 @@ def coverage(network: ART2A | EuclideanART, patterns: ArrayLike) -> float:
     network : ART2A or EuclideanART
         Fitted. It learns nothing here.
     patterns : array_like, shape (n, m)
-        Any patterns, learned or not.
+        Any patterns, learned or not, n >= 1.
 
     Returns
     -------
     float in [0, 1]
+
+    Raises
+    ------
+    ValueError
+        For another network, or patterns that `predict` refuses.
 
     References
     ----------
@@ -37,7 +42,9 @@ def coverage(network: ART2A | EuclideanART, patterns: ArrayLike) -> float:
     >>> coverage(network, [[0.1, 0.0], [0.5, 0.5], [1.0, 0.2], [1.0, 0.0]])
     0.75
     """
-    patterns = np.asarray(patterns, dtype=float)
+    if not isinstance(network, (ART2A, EuclideanART)):
+        raise ValueError(f"network must be an ART2A or EuclideanART, got {shown(network)}")
+    patterns = array("patterns", patterns, (None, None))
     own = network.cluster_centers_[network.predict(patterns)]
     if isinstance(network, ART2A):
         norms = np.linalg.norm(patterns, axis=1)
@@ -64,13 +71,20 @@ def quantization_error(places: ArrayLike, labels: ArrayLike) -> float:
     float
         In the unit of `places`.
 
+    Raises
+    ------
+    ValueError
+        For arguments of the wrong shape, not finite, or empty.
+
     Examples
     --------
     >>> quantization_error([[100.0], [300.0], [1000.0], [1200.0]], [0, 0, 1, 1])
     100.0
     """
-    places = _checks.array("places", places, (None, None))
-    labels = _checks.array("labels", labels, (len(places),))
+    places = array("places", places, (None, None))
+    labels = array("labels", labels, (len(places),))
+    if places.size == 0:
+        raise ValueError(f"places must hold at least one number, got shape {places.shape}")
     _, category, sizes = np.unique(labels, return_inverse=True, return_counts=True)
     sums = [np.bincount(category, weights=column) for column in places.T]
     means = np.column_stack(sums) / sizes[:, None]

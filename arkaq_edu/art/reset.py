@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu import _checks
+from arkaq_edu._checks import array, number
+
+ROUNDING = 1e-9  # a computed cosine may exceed 1 by less than this
 
 #: Cosines between `u` and the expectation for which figure 2.21 draws a curve.
 COSINES = (1.0, 0.8, 0.6, 0.4, 0.2, 0.0)
@@ -16,12 +18,22 @@ def match_norm(cosine: ArrayLike, cdz: ArrayLike, c: float) -> NDArray[np.float6
 
     Parameters
     ----------
-    cosine : array-like
-        Cosine of the angle between `u` and the expectation `z_J`.
-    cdz : array-like
-        Norm of ``c d z_J``: 0 for an uncommitted node, `learned_norm` at the end of learning.
-    c : float
+    cosine : array_like
+        Cosine of the angle between `u` and the expectation `z_J`, in [-1, 1].
+    cdz : array_like
+        Norm of ``c d z_J``, not negative: 0 for an uncommitted node, `learned_norm` at the end of
+        learning.
+    c : float in (0, 1)
         As in `ART2`.
+
+    Returns
+    -------
+    array of the common shape of `cosine` and `cdz`
+
+    Raises
+    ------
+    ValueError
+        For an argument out of range, or shapes that do not fit together.
 
     References
     ----------
@@ -33,7 +45,16 @@ def match_norm(cosine: ArrayLike, cdz: ArrayLike, c: float) -> NDArray[np.float6
     >>> match_norm([1.0, 0.5, 0.0], 0.9, c=0.1).round(3)
     array([1.   , 0.888, 0.746])
     """
-    cosine, cdz = np.asarray(cosine, dtype=np.float64), np.asarray(cdz, dtype=np.float64)
+    cosine, cdz, c = array("cosine", cosine, None), _norm(cdz), _inside("c", c)
+    if (np.abs(cosine) > 1 + ROUNDING).any():
+        raise ValueError(f"cosine must be in [-1, 1], got {np.abs(cosine).max():g} in magnitude")
+    try:
+        np.broadcast_shapes(cosine.shape, cdz.shape)
+    except ValueError:
+        raise ValueError(
+            f"cdz must have a shape that fits cosine's {cosine.shape}, got {cdz.shape}"
+        ) from None
+    cosine = np.clip(cosine, -1, 1)
     above = np.sqrt((1 + c) ** 2 + 2 * (1 + c) * cdz * cosine + cdz**2)
     return above / (1 + np.sqrt(c**2 + 2 * c * cdz * cosine + cdz**2))
 
@@ -55,6 +76,11 @@ def reset_cosine(vigilance: float, cdz: ArrayLike, c: float) -> NDArray[np.float
     array of the shape of `cdz`
         Cosines of the angle between `u` and `z_J`, from 0 to 1.
 
+    Raises
+    ------
+    ValueError
+        For an argument out of range.
+
     Notes
     -----
     With ``s = norm(c p)``, equation 2.47 is quadratic in s:
@@ -66,10 +92,7 @@ def reset_cosine(vigilance: float, cdz: ArrayLike, c: float) -> NDArray[np.float
     >>> cosine.round(3), match_norm(cosine, 0.9, c=0.1).round(3)
     (np.float64(0.764), np.float64(0.95))
     """
-    inside = {"open_low": True, "open_high": True}
-    r2 = _checks.number("vigilance", vigilance, 0, 1, **inside) ** 2
-    c = _checks.number("c", c, 0, 1, **inside)
-    cdz = np.asarray(cdz, dtype=float)
+    r2, c, cdz = _inside("vigilance", vigilance) ** 2, _inside("c", c), _norm(cdz)
     square, rest = (1 + c) / c - r2, 1 + c - r2 - cdz**2 / c
     inner = r2**2 - square * rest
     s = (r2 + np.sqrt(np.maximum(inner, 0))) / square
@@ -81,16 +104,21 @@ def reset_cosine(vigilance: float, cdz: ArrayLike, c: float) -> NDArray[np.float
 def learned_norm(c: float, d: float) -> float:
     """Return the norm of ``c d z_J`` at the end of learning, where ``norm(z_J) = 1 / (1 - d)``.
 
+    Both parameters are in (0, 1), as in `ART2`; others raise ``ValueError``.
+
     Examples
     --------
     >>> round(learned_norm(0.1, 0.9), 3)
     0.9
     """
+    c, d = _inside("c", c), _inside("d", d)
     return c * d / (1 - d)
 
 
 def reset_fact(c: float, d: float, vigilance: float) -> str:
     """Say which cosines reset a node that has learned all it can.
+
+    All three parameters are in (0, 1), as in `ART2`; others raise ``ValueError``.
 
     Examples
     --------
@@ -101,9 +129,23 @@ def reset_fact(c: float, d: float, vigilance: float) -> str:
     >>> reset_fact(0.3, 0.9, 0.95)
     'c d / (1 - d) is 2.7 and must not exceed 1 (c = 0.3, d = 0.9)'
     """
+    c, d, vigilance = _inside("c", c), _inside("d", d), _inside("vigilance", vigilance)
     end, given = learned_norm(c, d), f"(c = {c:g}, d = {d:g})"
     if end > 1 + 1e-12:
         return f"c d / (1 - d) is {end:.3g} and must not exceed 1 {given}"
     cosine = float(reset_cosine(vigilance, end, c))
     resets = f"resets a cosine below {cosine:.2f}" if cosine > 0 else "never resets"
     return f"once learned, vigilance {vigilance:g} {resets} {given}"
+
+
+def _inside(name: str, value: float) -> float:
+    """Return a parameter in (0, 1)."""
+    return number(name, value, 0, 1, open_low=True, open_high=True)
+
+
+def _norm(cdz: ArrayLike) -> NDArray[np.float64]:
+    """Return norms, which are not negative."""
+    norms = array("cdz", cdz, None)
+    if (norms < 0).any():
+        raise ValueError(f"cdz must be norms >= 0, got {norms.min():g}")
+    return norms

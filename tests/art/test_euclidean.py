@@ -267,8 +267,8 @@ def test_bad_batches_are_refused_as_scikit_learn_does(X, message):
         (np.empty((0, 2)), [], r"centers must have at least one row and one column, got \(0, 2\)"),
         ([[np.nan]], [1], r"centers must hold finite numbers"),
         ([[1.0]], [1, 2], r"counts must have shape \(1,\), got \(2,\)"),
-        ([[1.0]], [0], r"counts must be integers >= 1, got \[0\]"),
-        ([[1.0]], [1.5], r"counts must be integers >= 1, got \[1.5\]"),
+        ([[1.0]], [0], r"counts must be integers in .1, 2..53., got \[0\]"),
+        ([[1.0]], [1.5], r"counts must be integers in .* got \[1.5\]"),
     ],
 )
 def test_bad_centers_are_refused(centers, counts, message):
