@@ -171,6 +171,23 @@ def array(
     return x
 
 
+def n_axes(name: str, value: ArrayLike) -> int:
+    """Return the number of axes of an array, or refuse what has no one shape.
+
+    Examples
+    --------
+    >>> n_axes("b", [[0.5, 0.5]])
+    2
+    >>> n_axes("b", [[1.0], [0.5, 0.5]])
+    Traceback (most recent call last):
+    ValueError: b must be an array of numbers, got [[1.0], [0.5, 0.5]]
+    """
+    try:
+        return np.ndim(value)
+    except ValueError:
+        raise ValueError(f"{name} must be an array of numbers, got {shown(value)}") from None
+
+
 def _floats(name: str, value: ArrayLike) -> NDArray[np.float64]:
     """Return `value` as a float64 array in which every missing entry is NaN."""
     try:

@@ -181,12 +181,12 @@ class Sensing:
         >>> Sensing.thesis().scale([4100.0, -0.25])
         array([ 1. , -0.5])
         """
-        z = _checks.array("z", z, (*(None,) * (np.ndim(z) - 1), len(self.low)))
+        z = _checks.array("z", z, (*(None,) * (_checks.n_axes("z", z) - 1), len(self.low)))
         return scaled(z, *self.interval())
 
     def unscale(self, patterns: ArrayLike) -> NDArray[np.float64]:
         """Return patterns as measurements: the inverse of `scale` inside the interval."""
-        shape = (*(None,) * (np.ndim(patterns) - 1), len(self.low))
+        shape = (*(None,) * (_checks.n_axes("patterns", patterns) - 1), len(self.low))
         low, high = np.asarray(self.low), np.asarray(self.high)
         return _checks.array("patterns", patterns, shape) * (high - low) / 2 + (low + high) / 2
 

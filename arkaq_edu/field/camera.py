@@ -511,7 +511,9 @@ class Camera:
         209
         """
         if np.ndim(distance):
-            distance = _checks.array("distance", distance, (None,) * np.ndim(distance))
+            distance = _checks.array(
+                "distance", distance, (None,) * _checks.n_axes("distance", distance)
+            )
         else:
             distance = _checks.number("distance", distance)
         pixels = _checks.number("pixels", pixels)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._checks import array, integer, number
+from arkaq_edu._checks import array, integer, n_axes, number
 
 
 def regret(earned: ArrayLike, optimal: float) -> NDArray[np.float64]:
@@ -126,7 +126,7 @@ def speed_of_convergence(earned: ArrayLike, target: float, *, window: int = 1) -
 
 
 def _trials(earned: ArrayLike) -> NDArray[np.float64]:
-    x = array("earned", earned, (None,) * max(1, np.ndim(earned)))
+    x = array("earned", earned, (None,) * max(1, n_axes("earned", earned)))
     if not x.shape[-1]:
         raise ValueError(f"earned must hold at least one trial, got shape {x.shape}")
     return x

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
-from arkaq_edu._checks import affordable, array, distribution, integer, integers, number
+from arkaq_edu._checks import affordable, array, distribution, integer, integers, n_axes, number
 from arkaq_edu.mdp.model import MDP
 
 #: A longer horizon is refused: more sweeps than anybody means, or waits for.
@@ -533,7 +533,7 @@ def policy_chances(mdp: MDP, policy: ArrayLike) -> NDArray[np.float64]:
     >>> policy_chances(MDP(T=[[[1]], [[1]]], R=[[1, 3]], gamma=0.5), [1])
     array([[0., 1.]])
     """
-    if np.ndim(policy) == 1:
+    if n_axes("policy", policy) == 1:
         actions = integers("policy", policy, 0, mdp.n_actions - 1)
         if len(actions) != mdp.n_states:
             raise ValueError(f"policy must have shape ({mdp.n_states},), got {actions.shape}")

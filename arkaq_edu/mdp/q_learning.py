@@ -18,6 +18,7 @@ from arkaq_edu._checks import (
     generator,
     integer,
     integers,
+    n_axes,
     number,
     shown,
 )
@@ -242,7 +243,7 @@ class QLearner:
         columns = np.atleast_1d(
             integers("s", s, 0, n_states - 1),
             integers("a", a, 0, n_actions - 1),
-            array("r", r, (None,) * np.ndim(r)),
+            array("r", r, (None,) * n_axes("r", r)),
             integers("s_next", s_next, 0, n_states - 1),
             _flags("terminated", terminated),
             integers("n_steps", n_steps, 1),

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 from tqdm.auto import tqdm
 
-from arkaq_edu._checks import distribution, integer, number, shown
+from arkaq_edu._checks import distribution, integer, n_axes, number, shown
 from arkaq_edu._compiled import word_before_compiling
 from arkaq_edu.pomdp import point_kernels
 from arkaq_edu.pomdp.model import POMDP
@@ -83,7 +83,7 @@ class UpperBound:
             If `b` is not a distribution over the states.
         """
         n_states = len(self.corners)
-        many = np.ndim(b) == 2
+        many = n_axes("b", b) == 2
         beliefs = distribution("b", b, (None, n_states) if many else (n_states,))
         below = self.values - self.points @ self.corners
         points = _Beliefs(n_states, np.reshape(self.points, (-1, n_states)))

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._checks import distribution
+from arkaq_edu._checks import distribution, n_axes
 
 #: Where the beliefs lie that are certain of one of three states: left, top, right.
 CORNERS = np.array([[0.0, 0.0], [0.5, math.sqrt(3) / 2], [1.0, 0.0]])
@@ -41,4 +41,4 @@ def to_triangle(b: ArrayLike) -> NDArray[np.float64]:
     array([[0.   , 0.   ],
            [0.75 , 0.433]])
     """
-    return distribution("b", b, (None, 3) if np.ndim(b) == 2 else (3,)) @ CORNERS
+    return distribution("b", b, (None, 3) if n_axes("b", b) == 2 else (3,)) @ CORNERS

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._checks import array, distribution, integer, integers
+from arkaq_edu._checks import array, distribution, integer, integers, n_axes
 from arkaq_edu.pomdp.graph import PolicyGraph
 from arkaq_edu.pomdp.trees import PolicyTree
 
@@ -192,5 +192,5 @@ class ValueFunction:
 
     def _beliefs(self, b: ArrayLike) -> NDArray[np.float64]:
         n_states = self.alphas.shape[1]
-        many = np.ndim(b) == 2
+        many = n_axes("b", b) == 2
         return distribution("b", b, (None, n_states) if many else (n_states,))
