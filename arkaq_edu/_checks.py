@@ -112,6 +112,7 @@ def integers(
     Traceback (most recent call last):
     ValueError: s must hold integers in [0, 9], got -1 at (1,)
     """
+    n_axes(name, value)
     x = np.asarray(value)
     if np.ma.is_masked(value):
         raise ValueError(f"{name} must hold integers, got a masked array")
@@ -327,7 +328,7 @@ def transitions(
     ((3, 3), 3)
     """
     if not (isinstance(value, (list, tuple)) and any(hasattr(M, "tocsr") for M in value)):
-        if 0 in np.shape(value):
+        if n_axes(name, value) and 0 in np.shape(value):
             raise ValueError(f"{name} must have no axis of length 0, got shape {np.shape(value)}")
         return distribution(name, value, shape).copy()
     from scipy.sparse import csr_array
