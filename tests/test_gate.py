@@ -198,7 +198,8 @@ TAKES_NO_NUMBERS = set(
 
 NEVER_A_NUMBER = {
     "NaN": math.nan, "text": "1", "bytes": b"1", "complex": 1j,
-    "a date": np.datetime64("2026-01-01"), "an object": object(), "a function": len, "a dict": {"x": 1}, "a huge integer": 10**400,
+    "a date": np.datetime64("2026-01-01"), "an object": object(), "a function": len,
+    "a dict": {"x": 1}, "a huge integer": 10**400,
     "a float beyond the bound": 1e200, "a ragged list": [[1.0], [1.0, 2.0]], "masked": np.ma.masked,
 }  # fmt: skip
 OPTIONAL = {  # arguments for which these words are good input
