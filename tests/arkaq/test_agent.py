@@ -1,6 +1,7 @@
 """Arkaq: its arguments, and its actions."""
 
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -30,6 +31,18 @@ def test_the_two_sensings_see_the_world_differently(brief):
         ({"task": "dance"}, "task must be 'approach' or 'goal', got 'dance'"),
         ({"rng": -1}, "rng"),
         ({"rng": 0.5}, "rng"),
+        ({"rng": "0"}, "rng must be an integer"),
+        ({"vigilance": "0.1"}, "vigilance"),
+        ({"vigilance": None}, "vigilance"),
+        ({"task": ["goal"]}, "task must be"),
+        ({"task": None}, "task must be"),
+        ({"sensing": {}}, "sensing must be of the class Sensing, got {}"),
+        ({"sensing": 0}, "sensing must be of the class Sensing, got 0"),
+        ({"learning": {}}, "learning must be of the class TrainingSettings, got {}"),
+        ({"learning": {"patterns": 5}}, "learning must be of the class TrainingSettings"),
+        ({"segmenter": 0}, "segmenter must have the methods"),
+        ({"learner": {}}, "learner must have the methods"),
+        ({"learner": np.zeros((99, 99))}, "learner must have the methods .{,200}$"),
     ],
 )
 def test_bad_arguments_are_refused(arguments, words):
@@ -87,6 +100,21 @@ def test_act_refuses_bad_observations(brief, observation):
     with pytest.raises(ValueError, match="observation"):
         brief.act(observation)
     brief.reset()
+
+
+def test_a_list_is_an_observation_too(brief):
+    brief.reset()
+    action = brief.act(np.array([900.0, 0.1, 1.0]))
+    brief.reset()
+    assert brief.act([900.0, 0.1, 1.0]) == action
+
+
+def test_an_agent_can_travel_to_another_process(brief):
+    twin = pickle.loads(pickle.dumps(brief))
+    assert digest(twin) == digest(brief)
+    for agent in (brief, twin):
+        agent.reset()
+    assert twin.act([900.0, 0.1, 1.0]) == brief.act([900.0, 0.1, 1.0])
 
 
 def test_an_agent_that_has_not_learned_cannot_act():

@@ -252,3 +252,28 @@ def test_a_learner_needs_no_table_of_ours():
     cooling = [T for T in agent.q.temperatures if math.isfinite(T)]
     assert cooling == sorted(cooling, reverse=True) and 0.5 <= cooling[-1] < cooling[0] <= 10
     assert agent.act(np.array([900.0, 0.1, 1.0])) == 2
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda learner: learner.begin(2, 3, {}), "settings must be of the class TrainingSettings"),
+        (lambda learner: learner.begin(10**9, 3, TrainingSettings()), "n_states and n_actions"),
+        (lambda learner: learner.greedy(-1), r"s must be an integer in \[0, 1\], got -1"),
+        (lambda learner: learner.expected(2, 1.0), r"s must be an integer in \[0, 1\], got 2"),
+        (lambda learner: learner.expected(0, math.nan), "temperature"),
+        (lambda learner: learner.explore(5, 0), "s must be"),
+        (lambda learner: learner.explore(0, -1), "rng must be"),
+        (lambda learner: learner.exploit(0, 1.0, "rng"), "rng must be"),
+        (lambda learner: learner.exploit(0, -1.0, 0), "temperature"),
+        (lambda learner: learner.back_up(0, 3, 1.0), r"a must be an integer in \[0, 2\], got 3"),
+        (lambda learner: learner.back_up(-1, 0, 1.0), "s must be"),
+        (lambda learner: learner.back_up(0, 0, math.nan), "target must be"),
+    ],
+)
+def test_what_a_learner_refuses(call, words):
+    learner = Sarsa()
+    learner.begin(2, 3, TrainingSettings())
+    with pytest.raises(ValueError, match=words):
+        call(learner)
+    assert not learner.Q.any() and not learner.visits.any()

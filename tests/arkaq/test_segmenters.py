@@ -88,3 +88,32 @@ def test_every_network_of_the_house_is_a_segmenter():
 def test_what_is_no_part_is_refused(role, part):
     with pytest.raises(ValueError, match=f"{role} must have the methods"):
         Arkaq(**{role: part})
+
+
+@pytest.mark.parametrize(
+    ("cells", "words"),
+    [
+        ((10**6, 10**6), r"cells \(their product\) must be an integer in \[1, 4194304\]"),
+        ((10**30,), "cells must hold integers"),
+        ((2.0, 2.0), "cells must hold integers"),
+        (("2", "2"), "cells must hold integers"),
+        (5, "cells must be a sequence of integers, got 5"),
+        ((), "cells must be a sequence of integers"),
+        ("22", "cells must hold integers"),
+        (None, "cells must hold integers"),
+    ],
+)
+def test_cells_that_nobody_means_are_refused(cells, words):
+    with pytest.raises(ValueError, match=words):
+        UniformGrid(cells)
+
+
+@pytest.mark.parametrize("x", [[np.nan, 0.0], ["0", "0"], [0.0], None, 1e308, [1e308, 0.0]])
+def test_what_is_no_pattern_is_refused_by_name(x):
+    with pytest.raises(ValueError, match="^X must"):
+        UniformGrid((4, 2)).category(x)
+
+
+def test_a_pattern_far_beyond_the_border_belongs_to_a_border_cell():
+    grid = UniformGrid((4, 2))
+    assert grid.predict([[1e90, -1e90], [-1e90, 1e90]]).tolist() == [6, 1]

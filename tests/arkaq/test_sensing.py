@@ -55,12 +55,105 @@ def test_the_thesis_settings_are_those_it_prints():
         ({"R": [[1.0]]}, "R"),
         ({"Q": -np.eye(2)}, "Q"),
         ({"range_noise": -1.0}, "range_noise"),
+        ({"range_noise": np.nan}, "range_noise"),
+        ({"range_noise": "1"}, "range_noise"),
+        ({"range_noise": 1e99}, "range_noise"),
+        ({"low": (200.0, np.nan)}, "low"),
+        ({"low": ("200", "-1")}, "low"),
+        ({"high": (4100.0, 1e308)}, "high"),
+        ({"high": np.ma.masked_equal([4100.0, 0.5], 0.5)}, "high"),
+        ({"low": (), "high": ()}, "high must be above low"),
+        ({"A": [[1.0]], "H": [[1.0], [1.0]]}, "A must have a state for each of 2"),
+        ({"A": np.full((2, 2), np.nan)}, "A must hold finite numbers"),
+        ({"H": [[1.0, 0.0]]}, r"H must have shape \(2, 2\)"),
+        ({"B": [[np.nan] * 3] * 2}, "B must hold finite numbers"),
+        ({"P0": [[1e308, 0.0], [0.0, 1.0]]}, "P0"),
+        ({"P0": np.ma.masked_equal([[9.0, 0.0], [0.0, 1.0]], 9.0)}, "P0"),
     ],
 )
 def test_bad_settings_are_refused(change, words):
     good = vars(Sensing.consistent())
     with pytest.raises(ValueError, match=words):
         Sensing(**good | change)
+
+
+def test_settings_are_copied_and_cannot_be_edited():
+    low, B = [200.0, -0.5], [[-96.0, -96.0, -96.0], [0.0, -0.1, 0.1]]
+    A = np.eye(2)
+    sensing = Sensing(**vars(Sensing.consistent()) | {"low": low, "A": A, "B": B})
+    low[0], A[0, 0], B[0][0] = 0.0, 5.0, 5.0
+    assert sensing == Sensing.consistent() and sensing.low == (200.0, -0.5)
+    for array in (sensing.A, sensing.H, sensing.Q, sensing.R, sensing.P0, sensing.B):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0, 0] = 1.0
+
+
+@pytest.mark.parametrize("z", [[np.nan, 0.0], [np.inf, 0.0], ["1", "2"], [1.0], 1.0, None])
+def test_what_is_no_measurement_is_refused_by_name(z):
+    with pytest.raises(ValueError, match="^z must"):
+        Sensing.consistent().scale(z)
+    with pytest.raises(ValueError, match="^z must"):
+        Sensing.consistent().noise(z)
+    with pytest.raises(ValueError, match="^patterns must"):
+        Sensing.consistent().unscale(z)
+
+
+def test_a_distance_whose_noise_would_overflow_is_refused():
+    with pytest.raises(ValueError, match=r"z\[0\] must be a number in \[-1e\+20, 1e\+20\]"):
+        Sensing.consistent().noise([1e30, 0.0])
+
+
+LOOK = [2000.0, 0.1, 1.0]
+
+
+@pytest.mark.parametrize(
+    "look", [LOOK, tuple(LOOK), np.float32(LOOK), np.array(LOOK)[::1], np.array(LOOK, ">f8")]
+)
+@pytest.mark.parametrize("action", [1, np.int64(1), np.array(1), np.array([1])])
+def test_looks_are_lists_too_and_actions_arrays_of_one(look, action):
+    senses, expected = Estimator(Sensing.consistent()), Estimator(Sensing.consistent())
+    for k in (None, 1):
+        pattern = senses.observe(look, k and action)
+        assert pattern == pytest.approx(expected.observe(np.array(LOOK), k), abs=1e-6)
+    assert list(look) == pytest.approx(LOOK)
+
+
+@pytest.mark.parametrize(
+    ("look", "action", "words"),
+    [
+        ([2000.0, 0.1], 0, r"observation must have shape \(3,\)"),
+        ([np.nan, 0.1, 1.0], 0, "observation must hold finite"),
+        (np.ma.masked_equal(LOOK, 0.1), 0, "observation must hold finite"),
+        (["2000", "0", "1"], 0, "observation must be an array of numbers"),
+        (None, 0, "observation must"),
+        ([1e30, 0.1, 1.0], 0, r"z\[0\] must be"),
+        (LOOK, -1, r"action must be an integer in \[0, 2\], got -1"),
+        (LOOK, 3, r"action must be an integer in \[0, 2\], got 3"),
+        (LOOK, 1.0, "action must be an integer"),
+        (LOOK, "1", "action must be an integer"),
+    ],
+)
+def test_a_bad_look_or_action_is_refused_by_name_and_changes_nothing(look, action, words):
+    senses = Estimator(Sensing.consistent())
+    senses.observe(LOOK, None)
+    x, P = senses.kalman.x, senses.kalman.P
+    with pytest.raises(ValueError, match=words):
+        senses.observe(look, action)
+    assert np.array_equal(senses.kalman.x, x) and np.array_equal(senses.kalman.P, P)
+
+
+def test_a_filter_that_does_not_know_the_actions_takes_any():
+    senses = Estimator(Sensing.thesis())
+    senses.observe(LOOK, None)
+    senses.observe(LOOK, 7)
+    with pytest.raises(ValueError, match="action must be an integer >= 0, got -1"):
+        senses.observe(LOOK, -1)
+
+
+@pytest.mark.parametrize("sensing", [None, {}, "consistent"])
+def test_an_estimator_of_no_sensing_is_refused(sensing):
+    with pytest.raises(ValueError, match="sensing must be of the class Sensing"):
+        Estimator(sensing)
 
 
 def walks(senses, episodes, seed):

@@ -3,6 +3,8 @@
 import json
 import math
 import os
+import tracemalloc
+import zipfile
 
 import gymnasium
 import numpy as np
@@ -181,6 +183,144 @@ def test_an_altered_file_is_refused(brief, saved, tmp_path):
         assert refused(path), changes
 
 
+def test_numbers_that_no_agent_has_are_refused(brief, saved, tmp_path):
+    path = tmp_path / "altered.npz"
+    counts, history = brief.art.counts_, np.zeros((2, 4))
+    sensing = brief.sensing.to_json()
+    contents = [
+        {"counts": counts.astype(np.float64)},
+        {"counts": counts.astype(np.uint64) + np.uint64(2**63)},
+        {"visits": brief.q.visits.astype(np.uint64) + np.uint64(2**63)},
+        {"Q": brief.q.Q + 1e308},
+        {"Q": brief.q.Q.astype("S8")},
+        {"history": np.add(history, [0, 1e300, 0, 0])},
+        {"history": np.add(history, [0, 0.5, 0, 0])},
+        {"history": np.add(history, [2, 1, 0, 0])},
+        {"history": np.add(history, [0, 1, math.nan, 0])},
+        {"history": np.add(history, [0, 1, 1e308, 0])},
+    ]
+    for changes in contents:
+        altered(saved, path, **changes)
+        assert refused(path), changes
+    settings = [
+        {"done_in_phase": 2**64}, {"cycles": 2**64}, {"cycles": 1e300}, {"seed": 2**64},
+        {"vigilance": 1e308}, {"sensing": sensing | {"range_noise": 1e308}},
+        {"sensing": sensing | {"high": [1e308, 0.5]}}, {"sensing": sensing | {"low": ["200", "0"]}},
+        {"sensing": sensing | {"A": [[math.nan, 0.0], [0.0, 1.0]]}},
+        {"sensing": sensing | {"P0": [[1e308, 0.0], [0.0, 1.0]]}},
+        {"learning": {"patterns": 10**12}}, {"learning": {"hot": math.inf}},
+        {"segmenter": {"class": "UniformGrid", "cells": [10**6, 10**6]}},
+        {"environments": []}, {"environments": {"lunch": {}}}, {"environments": {"Q-learning": 1}},
+    ]  # fmt: skip
+    for changes in settings:
+        altered(saved, path, settings=changes)
+        assert refused(path), changes
+
+
+def test_an_agent_without_what_its_phase_has_is_refused(saved, tmp_path):
+    path = tmp_path / "altered.npz"
+    for name in ("counts", "centers", "Q", "visits", "history", "settings"):
+        altered(saved, path)
+        with np.load(path) as file:
+            np.savez(path, **{other: file[other] for other in file if other != name})
+        assert refused(path), name
+
+
+def huge(path, name, header, data=b"", compression=zipfile.ZIP_DEFLATED):
+    """Write an archive with one array, whose header need not be true."""
+    with zipfile.ZipFile(path, "w", compression) as archive, archive.open(name, "w") as file:
+        np.lib.format.write_array_header_1_0(file, header)
+        file.write(data)
+
+
+def memory(call):
+    """The most memory that a call took (bytes)."""
+    tracemalloc.start()
+    try:
+        call()
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
+def test_an_array_that_nobody_needs_is_not_unpacked(brief, saved, tmp_path):
+    path = tmp_path / "large.npz"
+    path.write_bytes(saved.read_bytes())
+    with zipfile.ZipFile(path, "a", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("notes.npy", bytes(2**27))
+    assert memory(lambda: Arkaq.load(path)) < 2**24
+    assert digest(Arkaq.load(path)) == digest(brief)
+
+
+@pytest.mark.parametrize(
+    ("shape", "dtype", "data"),
+    [
+        ((2**40,), "<f8", b""),
+        ((2**40, 2**40), "<f8", b""),
+        ((2**62, 0), "<f8", b"x"),
+        ((100,), "<f8", b"few"),
+        ((-1,), "<f8", b""),
+        ((), f"<U{2**28}", b""),
+        ((3,), "|O", b"gASVBgAAAAAAAACMAm9zlC4="),
+        ((2**26,), "<f8", bytes(2**20)),
+    ],
+)
+def test_an_array_that_claims_to_be_huge_is_refused_before_memory_is_taken(
+    shape, dtype, data, tmp_path
+):
+    path = tmp_path / "huge.npz"
+    header = {"descr": dtype, "fortran_order": False, "shape": shape}
+    for name in ("settings.npy", "Q.npy"):
+        huge(path, name, header, data)
+        assert memory(lambda: refused(path)) < 2**24
+        assert len(message(path)) < 300
+
+
+def test_an_array_that_is_huge_is_refused_before_memory_is_taken(tmp_path, monkeypatch):
+    path = tmp_path / "huge.npz"
+    monkeypatch.setattr(storage, "MOST_BYTES", 2**22)
+    header = {"descr": "<f8", "fortran_order": False, "shape": (2**22,)}
+    huge(path, "Q.npy", header, bytes(2**25))
+    assert path.stat().st_size < 2**16
+    assert memory(lambda: refused(path)) < 2**22
+    assert "Q must take at most 4,194,304 bytes of memory, got 33,554,432" in message(path)
+
+
+def test_other_ways_to_pack_an_array_are_refused(saved, tmp_path):
+    path = tmp_path / "odd.npz"
+    header = {"descr": "<f8", "fortran_order": False, "shape": (1,)}
+    huge(path, "Q.npy", header, bytes(8), zipfile.ZIP_LZMA)
+    assert "Q must be stored or deflated" in message(path)
+    with zipfile.ZipFile(path, "w") as archive, archive.open("Q.npy", "w") as file:
+        np.lib.format.write_array(file, np.zeros(1), version=(3, 0))
+    assert "Q must be an npy array of version 1 or 2, got (3, 0)" in message(path)
+    with zipfile.ZipFile(path, "w") as archive, archive.open("Q.npy", "w") as file:
+        np.lib.format.write_array(file, np.zeros(1), version=(2, 0))
+    assert "it has no 'settings'" in message(path)
+
+
+def message(path):
+    with pytest.raises(ValueError, match="not an agent") as caught:
+        Arkaq.load(path)
+    return str(caught.value)
+
+
+def test_a_refusal_is_short_and_never_advises_to_run_what_is_in_the_file(brief, saved, tmp_path):
+    text, path = tmp_path / "a.txt", tmp_path / "altered.npz"
+    text.write_text("good morning\n" * 1000)
+    messages = [message(text)]
+    for changes in (
+        {"counts": -brief.art.counts_},
+        {"Q": np.full((500, 500), math.nan)},
+        {"history": np.full((500, 4), -1.0)},
+        {"centers": np.array([{"a": 1}] * 500, dtype=object)},
+    ):
+        altered(saved, path, **changes)
+        messages.append(message(path))
+    assert all(len(words) < len(str(path)) + 200 for words in messages)
+    assert not any("unsafe" in words or "pickle" in words for words in messages)
+
+
 def test_what_is_no_agent_at_all_is_refused(tmp_path):
     text, array, folder = tmp_path / "a.txt", tmp_path / "a.npy", tmp_path / "a"
     text.write_text("good morning")
@@ -189,6 +329,9 @@ def test_what_is_no_agent_at_all_is_refused(tmp_path):
     other = tmp_path / "other.npz"
     np.savez(other, settings=np.array("[1, 2]"))
     assert all(map(refused, (text, array, folder, other)))
+    for settings in (np.array(7), np.array("[" * 100_000), np.array("{}"), np.array(["{}"] * 2)):
+        np.savez(other, settings=settings)
+        assert refused(other)
     with pytest.raises(FileNotFoundError):
         Arkaq.load(tmp_path / "nowhere.npz")
 
