@@ -24,35 +24,21 @@ from arkaq_edu.figures.drawing.plot import Plot
 
 # The centers of the states, chosen by hand so that no two arrows cross.
 SEGMENTATION_PLACES = {
-    "supervisor": (0.0, 1.0),
-    "observe": (4.0, 1.0),
-    "unknown": (2.0, 2.0),
-    "network": (4.0, -1.0),
-    "act": (0.0, -1.0),
-    DONE: (0.0, 2.4),
-}
+    "supervisor": (0.0, 1.0), "observe": (4.0, 1.0), "unknown": (2.0, 2.0),
+    "network": (4.0, -1.0), "act": (0.0, -1.0), DONE: (0.0, 2.4),
+}  # fmt: skip
 Q_LEARNING_PLACES = {
-    "supervisor": (0.0, -1.2),
-    "identify": (1.4, 1.0),
-    "explore": (4.1, 1.8),
-    "exploit": (4.1, 0.4),
-    "act": (6.8, 1.1),
-    "evaluate": (5.0, -1.2),
-    DONE: (0.0, 1.9),
-}
+    "supervisor": (0.0, -1.2), "identify": (1.4, 1.0), "explore": (4.1, 1.8),
+    "exploit": (4.1, 0.4), "act": (6.8, 1.1), "evaluate": (5.0, -1.2), DONE: (0.0, 1.9),
+}  # fmt: skip
 GOAL_SEGMENTATION_PLACES = {
     "turn" if state == "act" else state: place for state, place in SEGMENTATION_PLACES.items()
 }
 GOAL_Q_LEARNING_PLACES = {
-    "supervisor": (0.0, -1.2),
-    "identify": (1.3, 0.7),
-    "explore": (3.95, 1.6),
-    "exploit": (3.95, 0.4),
-    "act": (6.8, 0.4),
-    "judge": (6.8, -1.2),
-    "evaluate": (3.6, -1.2),
+    "supervisor": (0.0, -1.2), "identify": (1.3, 0.7), "explore": (3.95, 1.6),
+    "exploit": (3.95, 0.4), "act": (6.8, 0.4), "judge": (6.8, -1.2), "evaluate": (3.6, -1.2),
     DONE: (0.0, 1.9),
-}
+}  # fmt: skip
 
 
 def figure_3_1(ax: Axes | None = None) -> Plot:
@@ -99,14 +85,11 @@ def figure_3_1(ax: Axes | None = None) -> Plot:
         ("Q", "world"): wire(ax, (6.55, 0.95), (0.2, 0.95), (0.2, 1.4)),
         ("world", "Q"): wire(ax, (-0.2, 1.4), (-0.2, -0.3), (7.4, -0.3), (7.4, 0.6)),
     }
-    for place, text in (
-        ((1.45, 3.05), "sighting"),
-        ((5.65, 3.05), "estimate"),
-        ((7.4, 2.0), "state"),
-        ((1.45, 0.95), "action"),
-        ((4.0, -0.3), "reward"),
-    ):
-        words(ax, place, text)
+    for text, x, y in (
+        ("sighting", 1.45, 3.05), ("estimate", 5.65, 3.05), ("state", 7.4, 2.0),
+        ("action", 1.45, 0.95), ("reward", 4.0, -0.3),
+    ):  # fmt: skip
+        words(ax, (x, y), text)
     words(ax, (2.5, 3.85), "world model generator", "left", style.QUIET)
     words(ax, (2.5, 1.4), "policy generator", "left", style.QUIET)
     return Plot(ax, parts=parts, wires=wires)
@@ -163,22 +146,16 @@ def figure_3_2(ax: Axes | None = None) -> Plot:
         ("world", "table"): wire(ax, (-0.3, 1.25), (-0.3, -1.1), (9.4, -1.1), (9.4, -0.05)),
         ("choose", "table"): wire(ax, (6.3, 0.2), (8.65, 0.2)),
     }
-    for place, text in (
-        ((0.95, 2.75), "sighting"),
-        ((2.7, 1.8), "action"),
-        ((9.4, 1.8), "state $s$"),
-        ((7.5, 0.85), "the row of $s$"),
-        ((7.5, -0.1), "action"),
-        ((3.8, 0.4), "action"),
-        ((4.9, -1.1), "reward $r$"),
-    ):
-        words(ax, place, text)
-    for x, y, text in (
-        (1.9, 4.35, "Kalman filter"),
-        (8.65, 4.35, "ART network"),
-        (4.5, 1.25, "Boltzmann choice, cooling"),
-        (1.9, -0.3, "Q-learning"),
-    ):
+    for text, x, y in (
+        ("sighting", 0.95, 2.75), ("action", 2.7, 1.8), ("state $s$", 9.4, 1.8),
+        ("the row of $s$", 7.5, 0.85), ("action", 7.5, -0.1), ("action", 3.8, 0.4),
+        ("reward $r$", 4.9, -1.1),
+    ):  # fmt: skip
+        words(ax, (x, y), text)
+    for text, x, y in (
+        ("Kalman filter", 1.9, 4.35), ("ART network", 8.65, 4.35),
+        ("Boltzmann choice, cooling", 4.5, 1.25), ("Q-learning", 1.9, -0.3),
+    ):  # fmt: skip
         words(ax, (x, y), text, "left", style.QUIET)
     return Plot(ax, parts=parts, wires=wires)
 

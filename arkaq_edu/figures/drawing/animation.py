@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import tempfile
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +13,7 @@ import numpy as np
 from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
 
+from arkaq_edu._files import replacing
 from arkaq_edu.envs.ball_approach import ACTIONS
 from arkaq_edu.envs.score_goal import ACTIONS as GOAL_ACTIONS
 from arkaq_edu.experiments.approach.evaluation import Trajectory
@@ -58,21 +60,33 @@ def animate(episode: Trajectory | Shot) -> FuncAnimation:
     return _animate_shot(episode) if isinstance(episode, Shot) else _animate_walk(episode)
 
 
+def _film(
+    figure: Figure, summary: str, ends: tuple[float, float], n: int, draw: Callable[[int], str]
+) -> FuncAnimation:
+    """Return a film of n frames; `draw` changes the picture and returns what is written below."""
+    figure.text(0.01, ends[1], summary, va="top", color=style.INK)
+    caption = figure.text(0.01, ends[0], "", va="bottom", color=style.INK)
+    pause = 1000 // FRAMES_PER_SECOND
+
+    def show(frame: int) -> None:
+        caption.set_text(draw(frame))
+
+    return FuncAnimation(figure, show, frames=n, interval=pause, blit=False)
+
+
 def _animate_walk(walked: Trajectory) -> FuncAnimation:
     figure = Figure(figsize=(7.0, 3.4), dpi=_DPI)
     sides = {"left": 0.01, "right": 0.99, "bottom": 0.15, "top": 0.84, "wspace": 0.03}
     field, eye = figure.subplots(1, 2, width_ratios=(1.5, 1.3), gridspec_kw=sides)
     for ax, title in ((field, "from above"), (eye, "what the camera sees")):
         style.axes(ax, title=title).axis("off")
-    figure.text(0.01, 0.97, walked.summary, va="top", color=style.INK)
-    caption = figure.text(0.01, 0.02, "", va="bottom", color=style.INK)
     world, camera = World(rng=0), Camera()
     above = field.imshow(bird_view(world), extent=EXTENT)
     seen_from = eye.imshow(camera.picture(world))
     (sighting,) = field.plot([], [], "o", color="white", markerfacecolor="none", markersize=9)
     (estimate,) = field.plot([], [], "+", color=style.OURS, markersize=6)
 
-    def show(frame: int) -> None:
+    def draw(frame: int) -> str:
         look = walked.table.iloc[frame]
         world.reset((look.x, look.y, look.heading), (look.ball_x, look.ball_y))
         trail = walked.table[["x", "y"]].iloc[: frame + 1].to_numpy().tolist()
@@ -80,10 +94,9 @@ def _animate_walk(walked: Trajectory) -> FuncAnimation:
         seen_from.set_data(camera.picture(world))
         sighting.set_data(*_on_field(look, look.seen_distance, look.seen_orientation))
         estimate.set_data(*_on_field(look, look.estimated_distance, look.estimated_orientation))
-        caption.set_text(caption_at(walked, frame))
+        return caption_at(walked, frame)
 
-    pause = 1000 // FRAMES_PER_SECOND
-    return FuncAnimation(figure, show, frames=len(walked.table), interval=pause, blit=False)
+    return _film(figure, walked.summary, (0.02, 0.97), len(walked.table), draw)
 
 
 def caption_at(walked: Trajectory, look: int) -> str:
@@ -116,21 +129,16 @@ def _animate_shot(shot: Shot) -> FuncAnimation:
     figure = Figure(figsize=(4.4, 6.4), dpi=_DPI)
     ax = style.axes(figure.add_axes((0.01, 0.05, 0.98, 0.9)))
     ax.axis("off")
-    figure.text(0.01, 0.99, shot.summary, va="top", color=style.INK)
-    caption = figure.text(0.01, 0.01, "", va="bottom", color=style.INK)
     above = ax.imshow(shot.frames[0], extent=EXTENT)
     ax.set_xlim(0, EXTENT[1])  # the goal's half of the field: nobody plays in the other
 
-    def show(frame: int) -> None:
+    def draw(frame: int) -> str:
         above.set_data(shot.frames[frame])
         row = shot.table.iloc[shot.looks[frame]]
         then = GOAL_ACTIONS[int(row.action)] if row.action >= 0 else "the end"
-        caption.set_text(
-            f"estimate {row.estimated_orientation:+.2f} rad, state {row.category:.0f}: {then}"
-        )
+        return f"estimate {row.estimated_orientation:+.2f} rad, state {row.category:.0f}: {then}"
 
-    pause = 1000 // FRAMES_PER_SECOND
-    return FuncAnimation(figure, show, frames=len(shot.frames), interval=pause, blit=False)
+    return _film(figure, shot.summary, (0.01, 0.99), len(shot.frames), draw)
 
 
 def save_film(episode: Trajectory | Shot, path: str | os.PathLike[str]) -> None:
@@ -157,12 +165,13 @@ def save_film(episode: Trajectory | Shot, path: str | os.PathLike[str]) -> None:
     ValueError: path must end in .gif or .html, got 'walk.avi'
     """
     ending = Path(path).suffix.lower()
-    if ending == ".gif":
-        animate(episode).save(Path(path), PillowWriter(FRAMES_PER_SECOND), dpi=_DPI)
-    elif ending == ".html":
-        Path(path).write_text(_page(animate(episode), episode.summary), encoding="utf-8")
-    else:
+    if ending not in (".gif", ".html"):
         raise ValueError(f"path must end in .gif or .html, got {os.fspath(path)!r}")
+    with replacing(path) as fresh:
+        if ending == ".gif":
+            animate(episode).save(fresh, PillowWriter(FRAMES_PER_SECOND), dpi=_DPI)
+        else:
+            fresh.write_text(_page(animate(episode), episode.summary), encoding="utf-8")
 
 
 def _page(animation: FuncAnimation, title: str) -> str:
