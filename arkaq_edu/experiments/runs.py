@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from joblib import Parallel
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from tqdm.auto import tqdm
 
 from arkaq_edu import _checks
@@ -91,6 +91,32 @@ def thesis_numbers() -> pd.Series:
     333
     """
     return pd.read_csv(data_file("thesis.csv"), index_col="quantity").thesis
+
+
+def policy_fact(agent: Arkaq, actions: ArrayLike, names: tuple[str, ...], quantity: str) -> str:
+    """Say how many states an agent has, how many the thesis prints, and how many do what.
+
+    Parameters
+    ----------
+    agent : Arkaq
+        Its vigilance is compared with those of the thesis.
+    actions : array_like of int, shape (S,)
+        The action of each state.
+    names : tuple of str
+        The name of each action.
+    quantity : str
+        The name of the thesis's number in `thesis_numbers`, without the vigilance.
+
+    Examples
+    --------
+    >>> policy_fact(Arkaq(vigilance=0.1, rng=0), [0, 0, 1], ("go", "turn"), "centers, vigilance")
+    '3 states (thesis 333) at vigilance 0.1: 2 go, 1 turn'
+    """
+    actions = np.asarray(actions)
+    parts = ", ".join(f"{(actions == i).sum()} {name}" for i, name in enumerate(names))
+    printed = thesis_numbers().get(f"{quantity} {agent.vigilance:g}")
+    beside = "" if printed is None else f" (thesis {printed})"
+    return f"{len(actions)} states{beside} at vigilance {agent.vigilance:g}: {parts}"
 
 
 def agent_file(folder: str | os.PathLike[str], task: str, kind: str, seed: int) -> Path:

@@ -31,8 +31,9 @@ from numpy.typing import ArrayLike
 from arkaq_edu import _checks
 from arkaq_edu.arkaq import Arkaq
 from arkaq_edu.envs.ball_approach import ACTIONS
-from arkaq_edu.experiments import approach, learning_curve, thesis_numbers
+from arkaq_edu.experiments import approach, learning_curve
 from arkaq_edu.experiments.approach.evaluation import Trajectory
+from arkaq_edu.experiments.runs import policy_fact
 from arkaq_edu.experiments.segmentation import in_view
 from arkaq_edu.field import World
 from arkaq_edu.field.supervisor import CLOSE_ENOUGH, STRAIGHT_ENOUGH
@@ -50,7 +51,6 @@ MARKERS: dict[str, Path | str] = {
     "right": _UP.transformed(Affine2D().rotate_deg(-90)),
     "kick": "o",
 }
-_WHITE = "#ffffff"
 
 
 def plot_policy(
@@ -139,17 +139,8 @@ def figure_5_16(ax: Axes | None = None, *, agent: Arkaq | None = None) -> Plot:
     if agent.q is None:
         raise ValueError("agent must have learned, got one without values")
     actions = agent.q.Q.argmax(axis=1)
-    title = policy_title(agent, actions, ACTIONS, "centers, vigilance")
+    title = policy_fact(agent, actions, ACTIONS, "centers, vigilance")
     return plot_policy(agent.art.cluster_centers_, actions, ax, title=title)
-
-
-def policy_title(agent: Arkaq, actions: ArrayLike, names: tuple[str, ...], quantity: str) -> str:
-    """Say how many states an agent has, how many the thesis prints, and how many do what."""
-    actions = np.asarray(actions)
-    parts = ", ".join(f"{(actions == i).sum()} {name}" for i, name in enumerate(names))
-    printed = thesis_numbers().get(f"{quantity} {agent.vigilance:g}")
-    beside = "" if printed is None else f" (thesis {printed})"
-    return f"{len(actions)} states{beside} at vigilance {agent.vigilance:g}: {parts}"
 
 
 def plot_learning(agent: Arkaq, ax: Axes | None = None, *, window: int = 50) -> Plot:
@@ -269,9 +260,9 @@ def plot_above(walked: Trajectory, ax: Axes | None = None, *, title: str = "") -
     world.reset((last.x, last.y, last.heading), (last.ball_x, last.ball_y))
     ax = plot_field(world, ax, title=title or walked.summary).ax
     line = [looks.x.iloc[0], last.ball_x], [looks.y.iloc[0], last.ball_y]
-    (straight,) = ax.plot(*line, "--", color=_WHITE, lw=1, label="straight line")
-    (path,) = ax.plot(looks.x, looks.y, color=_WHITE, lw=2, label="path")
-    bodies = plot_bodies(looks[["x", "y", "heading"]].iloc[:-1:5], ax, edgecolors=_WHITE)
+    (straight,) = ax.plot(*line, "--", color="white", lw=1, label="straight line")
+    (path,) = ax.plot(looks.x, looks.y, color="white", lw=2, label="path")
+    bodies = plot_bodies(looks[["x", "y", "heading"]].iloc[:-1:5], ax, edgecolors="white")
     ax.legend(loc="lower right", fontsize="small", labelcolor="white", facecolor="#2c5f3a")
     return Plot(ax, path=path, bodies=bodies, straight=straight)
 

@@ -17,9 +17,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.collections import PatchCollection
 from matplotlib.patches import Circle, Rectangle
@@ -30,10 +30,6 @@ from arkaq_edu.art.reset import COSINES, learned_norm, match_norm, reset_fact
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.figures.drawing.diagram import blank, box, frame, node, wire, words, write
 from arkaq_edu.figures.drawing.plot import Plot
-
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 # Diagrams
 

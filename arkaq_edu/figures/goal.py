@@ -29,7 +29,8 @@ from arkaq_edu.arkaq import Arkaq, Sensing
 from arkaq_edu.envs.score_goal import ACTIONS
 from arkaq_edu.experiments import goal, thesis_numbers
 from arkaq_edu.experiments.goal.task import Distance
-from arkaq_edu.figures.approach import plot_actions, policy_title
+from arkaq_edu.experiments.runs import policy_fact
+from arkaq_edu.figures.approach import plot_actions
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.figures.drawing.plot import Plot
 
@@ -102,10 +103,7 @@ def plot_segmentation(
     """
     patterns = goal.patterns(goal.load_sightings()) if patterns is None else patterns
     centers = goal.find_centers(vigilance, patterns)
-    n, printed = len(centers), thesis_numbers().get(f"goal centers, vigilance {vigilance:g}")
-    beside = "" if printed is None else f", the thesis printed {printed}"
-    title = f"{n} center{'s' if n > 1 else ''} at vigilance {vigilance:g}{beside}"
-    return plot_line(centers, patterns, ax, title=title)
+    return plot_line(centers, patterns, ax, title=goal.count_fact(len(centers), vigilance))
 
 
 def figure_5_35(ax: Axes | None = None, **options: Any) -> Plot:
@@ -155,7 +153,7 @@ def figure_5_39(ax: Axes | None = None, *, goal_agent: Arkaq | None = None) -> P
     middles, ends = goal.cells(agent.art.cluster_centers_)
     order = np.argsort(-agent.art.cluster_centers_.ravel())
     chosen = agent.q.Q.argmax(axis=1)[order]
-    ax = _line_axes(ax, policy_title(agent, chosen, ACTIONS, "goal centers, vigilance"))
+    ax = _line_axes(ax, policy_fact(agent, chosen, ACTIONS, "goal centers, vigilance"))
     # The last two digits are the opacity: a quarter.
     area = _draw_cells(ends, [style.ACTIONS[MARKS[ACTIONS[i]]] + "40" for i in chosen], ax)
     look = {"markersize": 10, "markeredgewidth": 0.4, "clip_on": False}

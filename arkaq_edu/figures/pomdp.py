@@ -28,19 +28,11 @@ from arkaq_edu.figures.drawing import style
 from arkaq_edu.figures.drawing.diagram import Place, arrow, blank, wire, words, write
 from arkaq_edu.figures.drawing.plot import Plot
 from arkaq_edu.figures.drawing.style import POMDP_ACTIONS, probability
-from arkaq_edu.pomdp import (
-    POMDP,
-    PolicyTree,
-    ValueFunction,
-    bowl,
-    dominated,
-    expected_rewards,
-    problem,
-    solve_pomdp,
-    solved,
-    tree_value,
-    upper_surface,
-)  # fmt: skip
+from arkaq_edu.pomdp import POMDP, PolicyTree, ValueFunction, problem, solve_pomdp, solved
+from arkaq_edu.pomdp.belief import expected_rewards
+from arkaq_edu.pomdp.pruning import dominated
+from arkaq_edu.pomdp.surface import bowl, upper_surface
+from arkaq_edu.pomdp.trees import tree_value
 
 #: The plans of figure 2.17, two steps of the problem "two_state": an action, and one for each of
 #: z1, z2 and z3.
@@ -565,7 +557,5 @@ def _dotted(ax: Axes, x: ArrayLike, low: float, high: ArrayLike) -> None:
 
 def _tag(ax: Axes, place: Place, text: str, offset: Place, color: str = style.INK) -> None:
     """Write text above or to the right of a point, on white."""
-    style.tag(
-        ax, place, text, offset, color=color, ha="left" if offset[0] else "center",
-        bbox=style.white(0.8, 0.8),
-    )  # fmt: skip
+    sides = {"ha": "left" if offset[0] else "center"}
+    style.tag(ax, place, text, offset, color=color, bbox=style.white(0.8, 0.8), **sides)

@@ -31,16 +31,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu.art import ART2A, EuclideanART
 from arkaq_edu.experiments import segmentation
-from arkaq_edu.experiments.segmentation import (
-    ANGULAR_RATE,
-    DISTANCE,
-    LEARNING_RATE,
-    ORIENTATION,
-    SENSING,
-    count_fact,
-    in_view,
-    map_of,
-)  # fmt: skip
+from arkaq_edu.experiments.segmentation import SENSING, in_view
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.figures.drawing.plot import Plot
 
@@ -189,9 +180,9 @@ def plot_cells(centers: ArrayLike, ax: Axes, colors: Sequence[str] | None = None
     >>> len(plot_cells([[0, -0.5], [0, 0.5]], Figure().subplots()).get_paths())
     2
     """
-    polygons, numbers = map_of(centers)
+    polygons, numbers = segmentation.map_of(centers)
     area = style.cells(polygons, colors or [style.CELLS[number] for number in numbers], ax)
-    (left, right), (near, far) = ORIENTATION, DISTANCE
+    (near, left), (far, right) = SENSING.low, SENSING.high
     area.set_clip_path(Rectangle((left, near), right - left, far - near, transform=ax.transData))
     return area
 
@@ -229,9 +220,8 @@ def plot_centers(centers: ArrayLike, ax: Axes | None = None, *, title: str = "")
 
 
 def figure_5_9(
-    ax: Axes | None = None, *, vigilance: float = 0.95, patterns: ArrayLike | None = None,
-    learning_rate: float = ANGULAR_RATE,
-) -> Plot:  # fmt: skip
+    ax: Axes | None = None, *, vigilance: float = 0.95, patterns: ArrayLike | None = None
+) -> Plot:
     """Draw figure 5.9, the templates of the angular network and the sectors they stand for.
 
     The hollow mark is the thesis's example, a ball at 2100 mm and 0.3 rad. A ring marks the
@@ -245,8 +235,6 @@ def figure_5_9(
         Cosine above which a pattern belongs to a template.
     patterns : array_like, shape (n, 2), optional
         Scaled patterns in their order; the recorded stream by default.
-    learning_rate : float in (0, 1]
-        As for `arkaq_edu.art.ART2A`.
 
     Returns
     -------
@@ -265,7 +253,7 @@ def figure_5_9(
     3 templates at cosine 0.95, an angle of 18.2°
     """
     patterns = segmentation.recorded_patterns() if patterns is None else patterns
-    art = ART2A(vigilance, learning_rate).fit(patterns)
+    art = ART2A(vigilance, segmentation.ANGULAR_RATE).fit(patterns)
     templates, n = art.cluster_centers_, art.n_clusters_
     title = f"{n} templates at cosine {vigilance:g}, an angle of {degrees(acos(vigilance)):.1f}°"
     plot = plot_centers(templates, ax, title=title)
@@ -282,7 +270,7 @@ def figure_5_9(
 
 def plot_segmentation(
     vigilance: float, ax: Axes | None = None, *, patterns: ArrayLike | None = None,
-    learning_rate: float | str = LEARNING_RATE,
+    learning_rate: float | str = segmentation.LEARNING_RATE,
 ) -> Plot:  # fmt: skip
     """Segment a stream of patterns and draw the centers, with the thesis's count and ours.
 
@@ -310,7 +298,7 @@ def plot_segmentation(
     """
     patterns = segmentation.recorded_patterns() if patterns is None else patterns
     centers = EuclideanART(vigilance, learning_rate).fit(patterns).cluster_centers_
-    return plot_centers(centers, ax, title=count_fact(len(centers), vigilance))
+    return plot_centers(centers, ax, title=segmentation.count_fact(len(centers), vigilance))
 
 
 def figure_5_10(ax: Axes | None = None, **options: Any) -> Plot:

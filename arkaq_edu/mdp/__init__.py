@@ -8,6 +8,7 @@ In ARKAQ only the segmentation of the world is.)
 - `optimality`, `performance`: what "best" means, and how well something was learned;
 - `bandits`, `choice`, `schedules`: exploration against exploitation;
 - `prediction`, `q_learning`, `training`: learning from experience (`compiled`: the fast twins);
+- `procedures`: figures 4.3 and 4.4 line by line;
 - `floor`, `machines`: the course's floor and a game on four machines, as explored.
 """
 

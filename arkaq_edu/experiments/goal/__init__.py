@@ -17,8 +17,8 @@ __getattr__, __dir__, __all__ = _lazy.attach(
         "policies": ["at_random", "greedy", "planner"],
         "evaluation": ["Shot", "describe", "evaluate", "record_episode"],
         "sightings": [
-            "VIGILANCES", "calibrate", "cells", "coverage", "find_centers", "load_center_counts",
-            "load_sightings", "mean_nis", "patterns", "record_sightings",
+            "VIGILANCES", "calibrate", "cells", "count_fact", "coverage", "find_centers",
+            "load_center_counts", "load_sightings", "mean_nis", "patterns", "record_sightings",
         ],
         "kicks": ["kick_trials", "load_kick_trials"],
         "planning": ["BestPolicy", "best_policy"],

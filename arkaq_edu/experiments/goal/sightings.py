@@ -15,6 +15,7 @@ from arkaq_edu.art import EuclideanART
 from arkaq_edu.envs.score_goal import TURN_LEFT, TURN_RIGHT
 from arkaq_edu.experiments import streams
 from arkaq_edu.experiments.goal.task import make_look_around
+from arkaq_edu.experiments.runs import thesis_numbers
 from arkaq_edu.experiments.streams import mean_nis as mean_nis
 
 #: The vigilances of figures 5.35 to 5.37.
@@ -159,6 +160,19 @@ def find_centers(vigilance: float, X: ArrayLike | None = None) -> NDArray[np.flo
     X = patterns(load_sightings()) if X is None else X
     eta = TrainingSettings.goal().learning_rate
     return np.sort(EuclideanART(vigilance, eta).fit(X).cluster_centers_, axis=0)
+
+
+def count_fact(n: int, vigilance: float) -> str:
+    """Say how many centers there are, and how many the thesis prints.
+
+    Examples
+    --------
+    >>> count_fact(14, 0.06), count_fact(1, 0.3)
+    ('14 centers at vigilance 0.06, the thesis printed 13', '1 center at vigilance 0.3')
+    """
+    printed = thesis_numbers().get(f"goal centers, vigilance {vigilance:g}")
+    beside = "" if printed is None else f", the thesis printed {printed}"
+    return f"{n} center{'s' if n > 1 else ''} at vigilance {vigilance:g}{beside}"
 
 
 def cells(centers: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
