@@ -68,7 +68,7 @@ def plot_line(
     heights = np.full(len(middles), _STRIP / 2)
     (dots,) = ax.plot(middles, heights, "o", color=style.INK, ms=5, clip_on=False)
     # A pattern at the end of the interval was clipped: the goal is somewhere beyond.
-    inside = Sensing.goal().unscale(patterns[np.abs(patterns) < 1])
+    inside = Sensing.goal().unscale(patterns[np.abs(patterns[:, 0]) < 1])
     counts, edges = np.histogram(inside, bins=100, range=(-0.5, 0.5))
     tops = _STRIP + 0.05 + (0.85 - _STRIP) * counts / max(1, counts.max())
     seen = ax.stairs(tops, edges, baseline=_STRIP + 0.05, fill=True, color=style.QUIET)
