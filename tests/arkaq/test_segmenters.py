@@ -110,7 +110,7 @@ def test_cells_that_nobody_means_are_refused(cells, words):
 
 @pytest.mark.parametrize("x", [[np.nan, 0.0], ["0", "0"], [0.0], None, 1e308, [1e308, 0.0]])
 def test_what_is_no_pattern_is_refused_by_name(x):
-    with pytest.raises(ValueError, match="^X must"):
+    with pytest.raises(ValueError, match=r"^X must"):
         UniformGrid((4, 2)).category(x)
 
 

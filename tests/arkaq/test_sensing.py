@@ -90,11 +90,11 @@ def test_settings_are_copied_and_cannot_be_edited():
 
 @pytest.mark.parametrize("z", [[np.nan, 0.0], [np.inf, 0.0], ["1", "2"], [1.0], 1.0, None])
 def test_what_is_no_measurement_is_refused_by_name(z):
-    with pytest.raises(ValueError, match="^z must"):
+    with pytest.raises(ValueError, match=r"^z must"):
         Sensing.consistent().scale(z)
-    with pytest.raises(ValueError, match="^z must"):
+    with pytest.raises(ValueError, match=r"^z must"):
         Sensing.consistent().noise(z)
-    with pytest.raises(ValueError, match="^patterns must"):
+    with pytest.raises(ValueError, match=r"^patterns must"):
         Sensing.consistent().unscale(z)
 
 

@@ -27,7 +27,7 @@ def test_bad_parameters_of_learning_are_refused(name, value):
         TrainingSettings(**{name: value})
 
 
-NAMES = list(TrainingSettings().to_json()) + ["cycle_reward"]
+NAMES = [*TrainingSettings().to_json(), "cycle_reward"]
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -56,7 +56,7 @@ def test_a_seed_is_an_integer_or_an_array_of_one(env, kind):
 
 @pytest.mark.parametrize("options", [5, "distance", [1, 2], {"x": 1}, {"x": "y" * 10_000}])
 def test_options_that_are_none_are_refused_by_name(env, options):
-    with pytest.raises(ValueError, match="^options must") as caught:
+    with pytest.raises(ValueError, match=r"^options must") as caught:
         env.unwrapped.reset(seed=1, options=options)
     assert len(str(caught.value)) < 200
 
