@@ -11,6 +11,7 @@ A refusal names the argument, what was given and what is allowed. The rule for n
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterable
 from typing import Any, TypeVar
 
@@ -184,7 +185,9 @@ def n_axes(name: str, value: ArrayLike) -> int:
     ValueError: b must be an array of numbers, got [[1.0], [0.5, 0.5]]
     """
     try:
-        return np.ndim(value)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # NumPy says that a mask becomes NaN
+            return np.ndim(value)
     except ValueError:
         raise ValueError(f"{name} must be an array of numbers, got {shown(value)}") from None
 
@@ -192,7 +195,9 @@ def n_axes(name: str, value: ArrayLike) -> int:
 def _floats(name: str, value: ArrayLike) -> NDArray[np.float64]:
     """Return `value` as a float64 array in which every missing entry is NaN."""
     try:
-        x = value if isinstance(value, np.ndarray) else np.asarray(value)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # NumPy says that a mask becomes NaN
+            x = value if isinstance(value, np.ndarray) else np.asarray(value)
         if x.dtype.kind not in "biufO":
             raise TypeError
         if type(x) is np.ndarray and x.dtype.kind != "O":  # no mask, so nothing is missing

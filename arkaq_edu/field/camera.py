@@ -539,6 +539,6 @@ def fit_power(distance: NDArray[np.float64], error: NDArray[np.float64]) -> tupl
 
 
 def _checked(colors: np.ndarray) -> np.ndarray:
-    if np.shape(colors) != (HEIGHT, WIDTH):
+    if _checks.n_axes("colors", colors) != 2 or np.shape(colors) != (HEIGHT, WIDTH):
         raise ValueError(f"colors must have shape ({HEIGHT}, {WIDTH}), got {np.shape(colors)}")
     return _checks.integers("colors", colors, 0, len(pitch.PALETTE) - 1)

@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from tqdm.auto import tqdm
+from tqdm import tqdm
 
 from arkaq_edu._checks import LARGEST
 from arkaq_edu.pomdp.model import POMDP
@@ -206,7 +206,9 @@ class _Reader(_Tokens):
         self.make_tables()
         if self.text == "start":
             self.start()
-        with tqdm(total=len(self.source), desc=self.path, delay=2, leave=False) as bar:
+        with tqdm(
+            total=len(self.source), desc=self.path, delay=2, disable=None, leave=False
+        ) as bar:
             while self.kind != "end":
                 at = self.at
                 self.entry()

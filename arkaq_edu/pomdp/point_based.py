@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
-from tqdm.auto import tqdm
+from tqdm import tqdm
 
 from arkaq_edu._checks import distribution, integer, n_axes, number, shown
 from arkaq_edu._compiled import word_before_compiling
@@ -218,7 +218,9 @@ def solve_point_based(
     seconds = np.inf if seconds is None else number("seconds", seconds, 0, open_high=True)
     stop = time.monotonic() + seconds
     search, backups = _Search(pomdp), 0
-    with tqdm(total=max_backups, desc="bounds", unit="backup", delay=2, leave=False) as bar:
+    with tqdm(
+        total=max_backups, desc="bounds", unit="backup", delay=2, disable=None, leave=False
+    ) as bar:
         while backups < max_backups and (gap := search.gap(pomdp.start)) > tol:
             if time.monotonic() >= stop:
                 break

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from tqdm.auto import tqdm
+from tqdm import tqdm
 
 from arkaq_edu._checks import integer, number, shown
 from arkaq_edu.pomdp.backup import Backup, backup, point_backup
@@ -158,7 +158,7 @@ def _finite(pomdp: POMDP, horizon: int) -> ValueFunction:
     actions = np.sort(pairs[:, 0])
     branches = np.empty((len(actions), 0), np.int64)
     V = ValueFunction(alphas[actions], actions, branches, None, lost, 1)
-    for steps in tqdm(range(2, horizon + 1), "steps", delay=2, leave=False):
+    for steps in tqdm(range(2, horizon + 1), "steps", delay=2, disable=None, leave=False):
         step = backup(pomdp, V.alphas, 0.0, beliefs)
         beliefs = step.beliefs
         error = step.lost + pomdp.gamma * V.error
@@ -173,7 +173,7 @@ def _endless(pomdp: POMDP, tol: float) -> ValueFunction:
     alphas = np.linalg.solve(corners - gamma * pomdp.T, pomdp.R.T[:, :, np.newaxis])[:, :, 0]
     finest = PRUNING_SHARE * tol * (1 - gamma)
     residual, beliefs, share = float(np.ptp(pomdp.R)), corners, COARSE
-    bar = tqdm(desc="steps", unit="step", delay=2, leave=False)
+    bar = tqdm(desc="steps", unit="step", delay=2, disable=None, leave=False)
     while True:
         bar.update()
         allowed = max(share * residual, finest)
