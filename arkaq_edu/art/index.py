@@ -44,7 +44,8 @@ def build(centers: NDArray[np.float64], n: int, vigilance: float) -> Index:
     --------
     >>> centers = np.array([[0.0, 0.0], [1.0, 1.0]])
     >>> index = build(centers, 2, vigilance=0.5)
-    >>> nearest(np.array([0.3, 0.0]), centers, index)
+    >>> i, distance = nearest(np.array([0.3, 0.0]), centers, index)
+    >>> int(i), distance
     (0, 0.3)
     >>> nearest(np.array([0.5, 0.0]), centers, index)
     (-1, inf)

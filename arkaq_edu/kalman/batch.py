@@ -74,7 +74,9 @@ def kalman_batch(
             found = np.empty((Z.shape[1], n, len(block)))
             side_by_side = np.ascontiguousarray(np.moveaxis(Z[block], 0, 2))
             L = len(block) if tracks is alone else 1
-            if constant and compiled.batch(*model, side_by_side, found, L):
+            with np.errstate(all="ignore"):  # as in `KalmanFilter.filter`
+                plain = constant and compiled.batch(*model, side_by_side, found, L)
+            if plain:
                 x[block] = np.moveaxis(found, 2, 0)
             else:
                 x[block] = [kf.filter(Z[i]).x for i in block]

@@ -337,7 +337,7 @@ def batch(A, H, Q, R, x0, P0, Z, x, L):
         mul_shared(H, P_prior, HP)
         mul_shared_transpose(HP, H, S)
         add(S, R)
-        if not (inverse_each(S, seen, S_inverse) and bounded_each(P_prior)):
+        if not (bounded_each(P_prior) and inverse_each(S, seen, S_inverse)):
             return False
         transpose_each(HP, PH)
         mul_each(PH, S_inverse, K)  # eq 2.57: K = P H' (H P H' + R)^-1

@@ -474,9 +474,10 @@ class KalmanFilter:
         }  # fmt: skip
         rows = {name: np.empty((T, *shape)) for name, shape in shapes.items()}
         accepted = np.empty(T, np.bool_)
-        log_likelihood = track(
-            *stacks, self._gates, self._x0, self._P0, Z, U, *rows.values(), accepted
-        )
+        with np.errstate(all="ignore"):  # without numba an overflow warns before it is named below
+            log_likelihood = track(
+                *stacks, self._gates, self._x0, self._P0, Z, U, *rows.values(), accepted
+            )
         check_growth(True, P=rows["P_prior"], x=rows["x_prior"])
         check_growth(True, P=rows["P"], x=rows["x"])
         return KalmanTrace(
