@@ -123,9 +123,9 @@ class UniformGrid(BaseEstimator):
         ValueError
             If the patterns have another number of features than the grid.
         """
-        if np.shape(X)[-1:] != (len(self.cells),):
-            raise ValueError(f"X must have {len(self.cells)} features, got shape {np.shape(X)}")
-        X = _checks.array("X", X, (None,) * _checks.n_axes("X", X)).clip(-1.0, 1.0)
+        X = _checks.array("X", X, None).clip(-1.0, 1.0)
+        if X.shape[-1:] != (len(self.cells),):
+            raise ValueError(f"X must have {len(self.cells)} features, got shape {X.shape}")
         places = np.floor((X + 1) / 2 * self.cells).astype(np.intp)
         return np.ravel_multi_index(tuple(np.moveaxis(places, -1, 0)), self.cells, mode="clip")
 

@@ -510,12 +510,7 @@ class Camera:
         >>> round(Camera().distance_error(4100.0, pixels=0.1))
         209
         """
-        if np.ndim(distance):
-            distance = _checks.array(
-                "distance", distance, (None,) * _checks.n_axes("distance", distance)
-            )
-        else:
-            distance = _checks.number("distance", distance)
+        distance = _checks.array("distance", distance, None)[()]
         pixels = _checks.number("pixels", pixels)
         return pixels * distance**2 / (FOCAL_LENGTH * pitch.BALL_RADIUS)
 
@@ -539,6 +534,7 @@ def fit_power(distance: NDArray[np.float64], error: NDArray[np.float64]) -> tupl
 
 
 def _checked(colors: np.ndarray) -> np.ndarray:
-    if _checks.n_axes("colors", colors) != 2 or np.shape(colors) != (HEIGHT, WIDTH):
-        raise ValueError(f"colors must have shape ({HEIGHT}, {WIDTH}), got {np.shape(colors)}")
-    return _checks.integers("colors", colors, 0, len(pitch.PALETTE) - 1)
+    pixels = _checks.integers("colors", colors, 0, len(pitch.PALETTE) - 1)
+    if pixels.shape != (HEIGHT, WIDTH):
+        raise ValueError(f"colors must have shape ({HEIGHT}, {WIDTH}), got {pixels.shape}")
+    return pixels

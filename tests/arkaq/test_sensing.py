@@ -88,7 +88,9 @@ def test_settings_are_copied_and_cannot_be_edited():
             array[0, 0] = 1.0
 
 
-@pytest.mark.parametrize("z", [[np.nan, 0.0], [np.inf, 0.0], ["1", "2"], [1.0], 1.0, None])
+@pytest.mark.parametrize(
+    "z", [[np.nan, 0.0], [np.inf, 0.0], ["1", "2"], [1.0], 1.0, None, [[1, 2], [3]]]
+)
 def test_what_is_no_measurement_is_refused_by_name(z):
     with pytest.raises(ValueError, match=r"^z must"):
         Sensing.consistent().scale(z)
