@@ -315,11 +315,12 @@ def play(
     array([ 2., 12., 43.])
     """
     pulls, players = integer("pulls", pulls, 1), integer("players", players, 1)
+    affordable("pulls and players", (players, max(pulls, len(bandit.p))))
     rng = generator("rng", rng)
     everyone = np.arange(players)
     counts = np.zeros((players, len(bandit.p)), dtype=np.int64)
     totals = np.zeros(counts.shape)
-    arms = np.empty(affordable("pulls and players", (pulls, players)), dtype=np.int64)
+    arms = np.empty((pulls, players), dtype=np.int64)
     rewards = np.empty((pulls, players))
     for t in range(pulls):
         chosen = strategy.choose(counts, totals / np.maximum(counts, 1), rng)

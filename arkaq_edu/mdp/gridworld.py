@@ -130,7 +130,11 @@ def grid_world(plan: Sequence[str] = FLOOR, slip: float = 0.1, gamma: float = 0.
     """
     slip = number("slip", slip, 0, 1)
     refusal = ValueError(f"plan must have rows of one length made of . # o x, got {shown(plan)}")
-    if isinstance(plan, str) or not all(isinstance(row, str) for row in plan):
+    if (
+        isinstance(plan, str)
+        or not np.iterable(plan)
+        or not all(isinstance(row, str) for row in plan)
+    ):
         raise refusal
     plan = tuple(plan)
     signs = _signs(plan)

@@ -280,7 +280,7 @@ class MDP(Frozen):
         Raises
         ------
         ValueError
-            If the environment has no transition table.
+            If there is no such environment, or it has no transition table.
 
         Examples
         --------
@@ -290,7 +290,12 @@ class MDP(Frozen):
         if isinstance(env, str):
             import gymnasium
 
-            env = gymnasium.make(env)
+            try:
+                env = gymnasium.make(env)
+            except gymnasium.error.Error as error:
+                raise ValueError(
+                    f"env must name an environment, got {shown(env)}: {error}"
+                ) from None
         env = getattr(env, "unwrapped", env)
         if not hasattr(env, "P"):
             raise ValueError(f"env must have a transition table P, got {env!r}")

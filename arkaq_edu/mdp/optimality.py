@@ -65,6 +65,8 @@ def delayed_rewards(
     array([ 2., 10., 11.])
     """
     waits = integers("delays", delays, 1)
+    if waits.ndim != 1:
+        raise ValueError(f"delays must have shape (n,), got {waits.shape}")
     n = len(waits)
     earned = array("rewards", rewards, (n,))
     n_states = 1 + int(waits.sum())

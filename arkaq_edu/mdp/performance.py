@@ -76,7 +76,7 @@ def quality_of_convergence(
     array([0.75, 0.5 ])
     """
     optimal = number("optimal", optimal)
-    baseline = number("baseline", baseline, high=optimal, open_high=True)
+    baseline = number("baseline", number("baseline", baseline), high=optimal, open_high=True)
     final = _trials(earned)[..., -integer("last", last, 1) :].mean(axis=-1)
     return (final - baseline) / (optimal - baseline)
 

@@ -271,6 +271,8 @@ def best_actions(Q: ArrayLike, slack: float = 1e-9) -> NDArray[np.bool_]:
            [ True, False, False]])
     """
     Q = array("Q", Q, (None, None), allow_minus_infinity=True)
+    if not Q.size:
+        raise ValueError(f"Q must have shape (S, A), each at least 1, got {Q.shape}")
     return Q.max(axis=1, keepdims=True) - number("slack", slack, 0) <= Q
 
 

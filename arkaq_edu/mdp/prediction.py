@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._checks import affordable, array, generator, integer, number
+from arkaq_edu._checks import affordable, array, generator, integer, number, shown
 from arkaq_edu.mdp import compiled
 from arkaq_edu.mdp.model import MDP
 from arkaq_edu.mdp.planning import policy_chances
@@ -176,6 +176,7 @@ def monte_carlo(
     >>> monte_carlo([episode], n_states=3, gamma=0.5)
     array([4., 8., 0.])
     """
+    episodes = _checked(episodes)
     for i, episode in enumerate(episodes):
         if not episode.terminated:
             raise ValueError(f"episodes must have ended, got one cut short at ({i},)")
@@ -234,6 +235,7 @@ def td0(
     >>> td0([episode, episode], n_states=3, gamma=0.5, alpha=1.0)
     array([4., 8., 0.])
     """
+    episodes = _checked(episodes)
     learner = QLearner(n_states, 1, alpha, gamma, initial=initial)
     if episodes:
         s = np.concatenate([episode.s[:-1] for episode in episodes])
@@ -243,3 +245,10 @@ def td0(
         ended = [(np.arange(len(e.r)) == len(e.r) - 1) & e.terminated for e in episodes]
         learner.replay(s, 0, r, s_next, np.concatenate(ended))
     return learner.Q[:, 0]
+
+
+def _checked(episodes: Sequence[Episode]) -> list[Episode]:
+    """Return the episodes as a list, or refuse what is none."""
+    if not np.iterable(episodes) or not all(isinstance(episode, Episode) for episode in episodes):
+        raise ValueError(f"episodes must be a sequence of Episode, got {shown(episodes)}")
+    return list(episodes)

@@ -501,7 +501,10 @@ def _flag(name: str, value: Any) -> bool:
 
 def _flags(name: str, value: ArrayLike) -> NDArray[np.bool_]:
     """Return an array of truth values."""
-    x = np.asarray(value)
+    try:
+        x = np.asarray(value)
+    except ValueError:
+        raise ValueError(f"{name} must hold true or false, got {shown(value)}") from None
     return x if x.dtype == bool else integers(name, value, 0, 1).astype(bool)
 
 

@@ -124,7 +124,7 @@ def hold(env: Any, s: int, a: int, max_repeat: int = 10) -> Held:
     Raises
     ------
     ValueError
-        If `max_repeat` is not an integer >= 1.
+        If `a` is not an action of the environment or `max_repeat` is not an integer >= 1.
 
     References
     ----------
@@ -138,6 +138,7 @@ def hold(env: Any, s: int, a: int, max_repeat: int = 10) -> Held:
     >>> hold(env, int(s), a=3, max_repeat=4)  # to the left, against the wall
     Held(rewards=[-1.0, -1.0, -1.0, -1.0], s_next=36, terminated=False, truncated=False)
     """
+    s, a = integer("s", s), integer("a", a, 0, int(env.action_space.n) - 1)
     rewards = []
     for _ in range(integer("max_repeat", max_repeat, 1)):
         s_next, r, terminated, truncated, _ = env.step(a)

@@ -71,6 +71,7 @@ def test_feet_that_slip_turn_the_robot_away_from_the_bridge():
         ({"plan": [".z"]}, "plan must have rows of one length made of"),
         ({"plan": []}, "plan must have rows of one length"),
         ({"plan": ["#o"]}, "plan must have a free square"),
+        ({"plan": None}, "plan must have rows of one length made of . # o x, got None"),
         ({"plan": "..o"}, "plan must have rows of one length"),
         ({"plan": [1, 2]}, r"plan must have rows of one length made of . # o x, got \[1, 2\]"),
         ({"plan": ["." * 10_000]}, "plan must need at most 2,147,483,648 bytes"),

@@ -153,6 +153,10 @@ def test_the_room_knows_nothing_of_the_rooms_above():
         ),
         (lambda m: m.step(0, 0, rng="0"), "rng must be a numpy Generator, an integer >= 0 or None"),
         (lambda m: MDP.from_gymnasium(m), "env must have a transition table P"),
+        (
+            lambda m: MDP.from_gymnasium("Nowhere-v0"),
+            "env must name an environment, got 'Nowhere-v0'",
+        ),
     ],
 )
 def test_bad_arguments_are_refused(call, message):

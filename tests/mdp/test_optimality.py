@@ -107,6 +107,7 @@ def test_the_average_reward_of_a_sparse_model_with_forbidden_actions():
     ("call", "message"),
     [
         (lambda: delayed_rewards([0], [1.0]), "delays must hold integers >= 1, got 0"),
+        (lambda: delayed_rewards(3, [1.0]), r"delays must have shape \(n,\), got \(\)"),
         (lambda: delayed_rewards([10**6], [1.0]), "delays must need at most 2,147,483,648 bytes"),
         (lambda: best_chains([1.0, np.nan, 2.0]), "earned must hold finite numbers, got nan"),
         (lambda: delayed_rewards([1, 2], [1.0]), r"rewards must have shape \(2,\), got \(1,\)"),

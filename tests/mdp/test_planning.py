@@ -216,6 +216,11 @@ def test_the_best_actions_are_all_that_earn_as_much(seed):
         ),
         (lambda m: error_bound(m, [0.0]), r"values must have shape \(2,\), got \(1,\)"),
         (lambda m: policy_evaluation(m, [0, 2]), r"policy must hold integers in \[0, 0\], got 2"),
+        (lambda m: policy_evaluation(m, [[1.0], [0.5, 0.5]]), "policy must be an array of numbers"),
+        (
+            lambda m: best_actions([[]]),
+            r"Q must have shape \(S, A\), each at least 1, got \(1, 0\)",
+        ),
         (lambda m: policy_evaluation(m, [0]), r"policy must have shape \(2,\), got \(1,\)"),
         (lambda m: policy_evaluation(m, [[1.0], [0.5]]), "policy must sum to 1"),
         (lambda m: value_iteration(m, horizon=10**9), r"in \[1, 1000000\], got 1000000000"),

@@ -111,6 +111,8 @@ def test_simulated_episodes_are_walks_of_the_model(mdp):
         (lambda m: discounted_returns([np.nan], 0.5), "r must hold finite numbers, got nan"),
         (lambda m: simulate(m, [0] * 7, rng=1.5), "rng must be a numpy Generator"),
         (lambda m: simulate(m, [0] * 7, max_steps=10**9, rng=0), "max_steps must need at most"),
+        (lambda m: td0([1, 2], 7, 0.5), r"episodes must be a sequence of Episode, got \[1, 2\]"),
+        (lambda m: monte_carlo(None, 7, 0.5), "episodes must be a sequence of Episode, got None"),
         (lambda m: td0([], 10**10, 0.5), "n_states and n_actions must need at most"),
     ],
 )

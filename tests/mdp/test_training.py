@@ -34,18 +34,20 @@ class Script(gymnasium.Env):
 
 
 def test_holding_ends_when_the_state_changes():
-    env = Script((0, 1.0, False, False), (0, 2.0, False, False), (3, 4.0, False, False))
+    env = Script(*((s, r, False, False) for s, r in ((0, 1.0), (0, 2.0), (3, 4.0))), n_actions=8)
     env.reset()
     assert hold(env, 0, 7) == ([1.0, 2.0, 4.0], 3, False, False)
     assert env.actions == [7, 7, 7]
 
 
 def test_holding_an_action_that_never_changes_the_state_is_capped():
-    env = Script(*[(0, 1.0, False, False)] * 50)
+    env = Script(*[(0, 1.0, False, False)] * 50, n_actions=3)
     env.reset()
     assert hold(env, 0, 2, max_repeat=6) == ([1.0] * 6, 0, False, False)
     with pytest.raises(ValueError, match="max_repeat must be an integer >= 1, got 0"):
         hold(env, 0, 2, max_repeat=0)
+    with pytest.raises(ValueError, match=r"a must be an integer in \[0, 2\], got 3"):
+        hold(env, 0, 3)
 
 
 @pytest.mark.parametrize(("terminated", "truncated"), [(True, False), (False, True)])
