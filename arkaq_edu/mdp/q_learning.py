@@ -501,10 +501,8 @@ def _flag(name: str, value: Any) -> bool:
 
 def _flags(name: str, value: ArrayLike) -> NDArray[np.bool_]:
     """Return an array of truth values."""
-    try:
-        x = np.asarray(value)
-    except ValueError:
-        raise ValueError(f"{name} must hold true or false, got {shown(value)}") from None
+    n_axes(name, value)
+    x = np.asarray(value)
     return x if x.dtype == bool else integers(name, value, 0, 1).astype(bool)
 
 
