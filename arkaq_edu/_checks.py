@@ -24,6 +24,9 @@ LARGEST = 1e100
 #: Tables of more bytes than this are refused: they are typing errors, not plans.
 MOST_BYTES = 2**31
 
+#: So many numbers are checked faster one by one than as an array.
+FEW = 16
+
 #: Larger integers do not fit a table of int64.
 MOST_INTEGER = 2**63 - 1
 
@@ -160,6 +163,9 @@ def array(
     if not fits:
         wanted = str(tuple("any" if s is None else s for s in shape or ())).replace("'any'", "any")
         raise ValueError(f"{name} must have shape {wanted}, got {x.shape}")
+    # The norm is at least as large as each entry, and not <= anything if one is NaN.
+    if x.size <= FEW and math.hypot(*x.ravel().tolist()) <= LARGEST:
+        return x
     # A NaN compares as False, so a missing entry is not "too large".
     good = ~(np.abs(x) > LARGEST) if allow_nan else np.abs(x) <= LARGEST
     if allow_minus_infinity:
