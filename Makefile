@@ -15,7 +15,7 @@ NO_PYTHON = this course needs Python 3.11 to 3.15 with venv, and found none on t
 PLATFORMS := x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu x86_64-pc-windows-msvc \
 	aarch64-apple-darwin
 
-.PHONY: help install lab test test-lowest check reproduce bench notebooks lock wheels
+.PHONY: help install lab test test-lowest soak check reproduce bench notebooks lock wheels
 
 help:
 	@echo 'make lab        open the course in JupyterLab'
@@ -27,6 +27,7 @@ help:
 	@echo 'make install    only make $(VENV), as each of the above does first'
 	@echo 'make lock       resolve requirements.lock anew from pyproject.toml'
 	@echo 'make wheels     check that the lock installs from wheels on every known system'
+	@echo 'make soak       run what takes an hour: kills, interrupts, millions of steps'
 	@echo 'make test-lowest  run the tests with the oldest versions that pyproject.toml allows'
 
 install: $(READY)
@@ -76,6 +77,10 @@ test-lowest: $(BIN)/uv
 		--no-build-isolation --editable .
 	build/lowest/bin/python -m pytest -n 2 --dist loadscope -q arkaq_edu tests \
 		--deselect tests/test_setup.py -m 'not browser'
+
+# Memory, drift, kills and interrupts over long runs. One process: what is measured is this one's.
+soak: $(READY)
+	$(BIN)/python -m pytest tests/soak -o python_files='soak_*.py' -p no:xdist
 
 $(BIN)/uv: $(READY)
 	$(BIN)/python -m pip install --quiet uv

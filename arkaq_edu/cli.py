@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from arkaq_edu import __version__
+from arkaq_edu._interrupts import LINE, STATUS, Interrupts
 from arkaq_edu._paths import FIRST_PAGE, copy_course, course_folder, in_repository
 
 
@@ -28,16 +29,26 @@ class OneLineErrors(click.Group):
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
         """Run the command line and exit with its status."""
+        interrupts = Interrupts()
         try:
-            status = super().main(*args, **{**kwargs, "standalone_mode": False})
-        except click.Abort:
-            click.echo("arkaq: interrupted", err=True)
-            status = 130
-        except (click.ClickException, ValueError, OSError) as error:
-            text = error.format_message() if isinstance(error, click.ClickException) else str(error)
-            click.echo(f"arkaq: error: {' '.join(text.split())}", err=True)
-            status = 2
-        sys.exit(status)
+            with interrupts:
+                status = super().main(*args, **{**kwargs, "standalone_mode": False})
+        except Exception as error:  # an interrupt can come out of a library as any error
+            status = STATUS if interrupts.came else _said(error)
+        if status == STATUS or interrupts.came:
+            click.echo(LINE, err=True)
+        sys.exit(STATUS if interrupts.came else status)
+
+
+def _said(error: Exception) -> int:
+    """Say in one line what was wrong with the input, and return the status; or raise the error."""
+    if isinstance(error, click.Abort):
+        return STATUS
+    if not isinstance(error, (click.ClickException, ValueError, OSError)):
+        raise error
+    text = error.format_message() if isinstance(error, click.ClickException) else str(error)
+    click.echo(f"arkaq: error: {' '.join(text.split())}", err=True)
+    return 2
 
 
 @click.group("arkaq", cls=OneLineErrors, invoke_without_command=True)
