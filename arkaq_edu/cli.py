@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -233,6 +235,59 @@ def reproduce(out: Path, seeds: int, approaches: int, jobs: int) -> None:
     agent = Arkaq.load(agent_file(out, "approach", "consistent", 0))
     goal_agent = Arkaq.load(agent_file(out, "goal", "near", 0))
     click.echo(write_report(out, table, FIGURES, agent=agent, goal_agent=goal_agent))
+
+
+@main.command()
+@click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.option(
+    "--out",
+    type=click.Path(file_okay=False, path_type=Path),
+    required=True,
+    help="Folder for the cells, the table and the picture.",
+)
+@click.option("--jobs", type=int, default=-1, show_default=True, help="Processes; -1: all cores.")
+@click.option("--cluster", metavar="ADDRESS", help="The scheduler of a Dask cluster to run on.")
+def study(file: Path, out: Path, jobs: int, cluster: str | None) -> None:
+    """Run a study: every combination of the settings in a TOML FILE, over many seeds.
+
+    Writes results.csv and results.png. Each finished cell is kept, so an interrupted study
+    continues when you call it again, and one with more values or seeds runs only what is new.
+    """
+    import matplotlib
+
+    matplotlib.use("agg")
+    from arkaq_edu._files import replacing
+    from arkaq_edu.experiments import read_plan, study
+    from arkaq_edu.figures import plot_study
+
+    plan = read_plan(file)
+    sys.path.insert(0, str(file.resolve().parent))  # parts of one's own stand beside the file
+    with _on_cluster(cluster, file.resolve().parent):
+        table = study(**plan, folder=out, jobs=jobs)
+    with replacing(out / "results.png") as fresh:
+        plot_study(table).ax[0].figure.savefig(fresh, dpi=150)
+    click.echo(f"{out / 'results.csv'}: {len(table)} rows, drawn in {out / 'results.png'}")
+
+
+@contextmanager
+def _on_cluster(address: str | None, folder: Path) -> Iterator[None]:
+    """Send joblib's work to a Dask cluster, together with the modules in a folder."""
+    if address is None:
+        yield
+        return
+    try:
+        from dask.distributed import Client
+    except ImportError:
+        raise click.UsageError("--cluster needs Dask: pip install 'arkaq-edu[cluster]'") from None
+    from joblib import parallel_config
+
+    with Client(address) as client, parallel_config(backend="dask"):
+        client.get_versions(
+            check=True, packages=["arkaq_edu"]
+        )  # refuses workers of another version
+        for module in sorted(folder.glob("*.py")):
+            client.upload_file(module, load=False)
+        yield
 
 
 def _start_jupyterlab(folder: Path, no_browser: bool) -> None:

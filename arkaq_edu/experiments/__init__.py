@@ -7,6 +7,8 @@
 - `segmentation`: the recorded sightings of the ball, cut into categories, and their map;
 - `kicks`: kicks of a real robot, and simulated ones;
 - `policies`: policies that play either problem;
+- `studies`: `study`, every combination of some settings over many seeds, and `read_study`;
+  `trials`: one cell of it;
 - `runs`: many runs at once, and their summary;
 - `reproduce`: the numbers of the thesis beside those measured here, over many seeds.
 """
@@ -24,11 +26,14 @@ __getattr__, __dir__, __all__ = _lazy.attach(
         "runs",
         "segmentation",
         "streams",
+        "studies",
+        "trials",
     ],
     submod_attrs={
         "kicks": ["load_kicks", "record_kicks"],
         "reproduce": ["goal_table", "results"],
         "runs": ["agent_file", "learning_curve", "summary", "thesis_numbers"],
+        "studies": ["read_plan", "read_study", "study"],
         "streams": ["count_centers", "mean_nis"],
     },
 )

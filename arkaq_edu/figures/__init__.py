@@ -9,10 +9,11 @@ __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
     submodules=[
         "approach", "arkaq", "art", "belief", "drawing", "field",
-        "gallery", "goal", "kalman", "learning", "mdp", "pomdp", "segmentation",
+        "gallery", "goal", "kalman", "learning", "mdp", "pomdp", "segmentation", "studies",
     ],
     submod_attrs={
         "drawing.animation": ["Film", "animate", "save_film"],
         "gallery": ["FIGURES", "draw"],
+        "studies": ["plot_study"],
     },
 )  # fmt: skip

@@ -26,7 +26,15 @@ TRAJECTORY_STARTS = (
 )  # fmt: skip
 
 
-def evaluate(policy: Policy, n: int = 500, seed: int = 0, *, near: float = 600.0) -> pd.DataFrame:
+def evaluate(
+    policy: Policy,
+    n: int = 500,
+    seed: int = 0,
+    *,
+    near: float = 600.0,
+    far: float = MAX_BALL_DISTANCE,
+    **options: Any,
+) -> pd.DataFrame:
     """Walk to the ball from fresh starts, uniform over the visible field.
 
     Parameters
@@ -37,8 +45,10 @@ def evaluate(policy: Policy, n: int = 500, seed: int = 0, *, near: float = 600.0
         Number of episodes.
     seed : int
         The seed of the starts and footsteps: the same for every policy.
-    near : float
-        The nearest start (mm); the farthest is 4100.
+    near, far : float
+        The nearest and the farthest start (mm).
+    **options
+        Other options of the task, for example ``patience``.
 
     Returns
     -------
@@ -53,10 +63,10 @@ def evaluate(policy: Policy, n: int = 500, seed: int = 0, *, near: float = 600.0
     >>> bool(evaluate(planner(), n=20).is_success.all())
     True
     """
-    env = gymnasium.make("arkaq_edu:BallApproach-v0")
+    env = gymnasium.make("arkaq_edu:BallApproach-v0", **options)
 
     def run_episode(choose: Choice, rng: np.random.Generator) -> dict[str, Any]:
-        distance, orientation = random_place(rng, near, MAX_BALL_DISTANCE)
+        distance, orientation = random_place(rng, near, far)
         place = {"distance": distance, "orientation": orientation}
         observation, info = env.reset(seed=int(rng.integers(2**31)), options=place)
         over = False
@@ -89,6 +99,25 @@ def describe(table: pd.DataFrame) -> str:
         f"ball reached in {table.is_success.mean():.1%} of {len(table)} fresh approaches, "
         f"+50 in {table.bonus.mean():.1%}"
     )
+
+
+def score(table: pd.DataFrame) -> dict[str, float]:
+    """Return what `evaluate` found, as numbers by name; see `arkaq_edu.experiments.study`.
+
+    Examples
+    --------
+    >>> from arkaq_edu.experiments.approach import planner
+    >>> found = score(evaluate(planner(), n=20))
+    >>> [*found], found["success"]
+    (['success', 'bonus', 'path', 'cycles', 'reward'], 100.0)
+    """
+    return {
+        "success": 100 * float(table.is_success.mean()),
+        "bonus": 100 * float(table.bonus.mean()),
+        "path": float(table.detour.median()),
+        "cycles": float(table.cycles.mean()),
+        "reward": float(table.reward.mean()),
+    }
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any
 import gymnasium
 
 from arkaq_edu._paths import data_file
-from arkaq_edu.arkaq import Arkaq, TrainingSettings
+from arkaq_edu.arkaq import Arkaq, Learner, Segmenter, Sensing, TrainingSettings
 
 #: The vigilance of the trained agent, as in figures 5.11 and 5.16.
 VIGILANCE = 0.1
@@ -29,10 +29,13 @@ def train(
     seed: int = 0,
     vigilance: float | None = None,
     *,
-    sensing: str = "consistent",
+    sensing: Sensing | str | None = None,
     learning: TrainingSettings | None = None,
+    segmenter: Segmenter | None = None,
+    learner: Learner | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
     progress: bool = True,
+    **options: Any,
 ) -> Arkaq:
     """Train an agent to walk to the ball.
 
@@ -42,14 +45,16 @@ def train(
         The agent's seed.
     vigilance : float, optional
         See `Arkaq`; by default .1.
-    sensing : {"consistent", "thesis"}
-        The settings of the Kalman filter.
+    sensing, segmenter, learner : optional
+        See `Arkaq`.
     learning : TrainingSettings, optional
         How the agent is trained.
     checkpoint : path, optional
         A file that keeps the run; an interrupted run continues from it. See `Arkaq.learn`.
     progress : bool
         Whether to show progress bars.
+    **options
+        Options of the task, for example ``far``.
 
     Returns
     -------
@@ -65,9 +70,25 @@ def train(
     >>> train(seed=1, learning=brief, progress=False).cycles >= 500
     True
     """
-    vigilance = VIGILANCE if vigilance is None else vigilance
-    agent = Arkaq(vigilance, sensing=sensing, learning=learning, rng=seed)  # type: ignore[arg-type]
-    return agent.learn(make_task(), checkpoint=checkpoint, progress=progress)
+    agent = Arkaq(
+        usual_vigilance() if vigilance is None else vigilance,
+        sensing=sensing,  # type: ignore[arg-type]
+        learning=learning,
+        segmenter=segmenter,
+        learner=learner,
+        rng=seed,
+    )
+    return agent.learn(make_task(**options), checkpoint=checkpoint, progress=progress)
+
+
+def usual_vigilance() -> float:
+    """Return the vigilance of figures 5.11 and 5.16, .1."""
+    return VIGILANCE
+
+
+def usual_learning() -> TrainingSettings:
+    """Return how an agent is trained: ``TrainingSettings()``."""
+    return TrainingSettings()
 
 
 def load_agent() -> Arkaq:

@@ -12,10 +12,10 @@ __getattr__, __dir__, __all__ = _lazy.attach(
     submod_attrs={
         "task": [
             "STARTS", "VIGILANCE", "LookAround", "load_agent", "make_look_around", "make_task",
-            "train",
+            "train", "usual_learning", "usual_vigilance",
         ],
         "policies": ["at_random", "greedy", "planner"],
-        "evaluation": ["Shot", "describe", "evaluate", "record_episode"],
+        "evaluation": ["Shot", "describe", "evaluate", "record_episode", "score"],
         "sightings": [
             "VIGILANCES", "calibrate", "cells", "count_fact", "coverage", "find_centers",
             "load_center_counts", "load_sightings", "mean_nis", "patterns", "record_sightings",

@@ -17,7 +17,12 @@ from arkaq_edu.experiments.policies import Choice, Policy
 
 
 def evaluate(
-    policy: Policy, n: int = 500, seed: int = 0, *, goal_distance: Distance = "near"
+    policy: Policy,
+    n: int = 500,
+    seed: int = 0,
+    *,
+    goal_distance: Distance | float = "near",
+    **options: Any,
 ) -> pd.DataFrame:
     """Let a policy aim and kick from fresh starts.
 
@@ -29,14 +34,16 @@ def evaluate(
         Number of episodes.
     seed : int
         The seed of starts, turns and kicks: the same for every policy.
-    goal_distance : {"near", "far"}
+    goal_distance : {"near", "far"} or float
         Where the robot stands.
+    **options
+        Other options of the task, for example ``patience``.
 
     Returns
     -------
     DataFrame
         One row an episode: start (the orientation there, rad), aim (the orientation at the last
-        action, rad), turns, kicked (whether the episode ended with a kick), is_success.
+        action, rad), turns, kicked (whether the episode ended with a kick), reward, is_success.
 
     Examples
     --------
@@ -45,7 +52,7 @@ def evaluate(
     >>> bool(shots.kicked.all()), bool(shots.aim.abs().max() < 0.08)
     (True, True)
     """
-    env = make_task(goal_distance)
+    env = make_task(goal_distance, **options)
 
     def run_episode(choose: Choice, rng: np.random.Generator) -> dict[str, Any]:
         observation, info = env.reset(seed=int(rng.integers(2**31)))
@@ -53,12 +60,13 @@ def evaluate(
         while not over:
             aim, action = info["orientation"], choose(observation, info)
             turns += action != KICK
-            observation, _, over, _, info = env.step(action)
+            observation, reward, over, _, info = env.step(action)
         return {
             "start": start,
             "aim": aim,
             "turns": turns,
             "kicked": action == KICK,
+            "reward": float(reward),
             "is_success": info["is_success"],
         }
 
@@ -74,6 +82,21 @@ def describe(table: pd.DataFrame) -> str:
     'goals in 50.0% of 2 fresh kicks'
     """
     return f"goals in {table.is_success.mean():.1%} of {len(table)} fresh kicks"
+
+
+def score(table: pd.DataFrame) -> dict[str, float]:
+    """Return what `evaluate` found, as numbers by name; see `arkaq_edu.experiments.study`.
+
+    Examples
+    --------
+    >>> score(pd.DataFrame({"is_success": [True, False], "turns": [1, 2], "reward": [100, -100]}))
+    {'success': 50.0, 'turns': 1.5, 'reward': 0.0}
+    """
+    return {
+        "success": 100 * float(table.is_success.mean()),
+        "turns": float(table.turns.mean()),
+        "reward": float(table.reward.mean()),
+    }
 
 
 @dataclass(frozen=True)

@@ -10,19 +10,13 @@ from gymnasium import spaces
 
 from arkaq_edu import _checks
 from arkaq_edu._paths import data_file
-from arkaq_edu.arkaq import Arkaq, TrainingSettings
+from arkaq_edu.arkaq import Arkaq, Learner, Segmenter, Sensing, TrainingSettings
 from arkaq_edu.envs.score_goal import KICK, STARTS, Start
 
 Distance = Literal["near", "far"]
 
 #: The vigilance of the trained agents: .06 in figures 5.39 and 5.40, .05 in figure 5.41.
 VIGILANCE = {"near": 0.06, "far": 0.05}
-
-# From far, two kicks in three miss even at best: telling the best action takes twice as long.
-_LEARNING = {
-    "near": TrainingSettings.goal(),
-    "far": TrainingSettings.goal(exploration=1000, exploitation=11_000),
-}
 
 
 def start_of(goal_distance: str) -> Start:
@@ -37,6 +31,32 @@ def start_of(goal_distance: str) -> Start:
     if goal_distance not in STARTS:
         raise ValueError(f"goal_distance must be 'near' or 'far', got {goal_distance!r}")
     return STARTS[goal_distance]
+
+
+def usual_vigilance(goal_distance: Distance | float = "near") -> float:
+    """Return the vigilance of the thesis.
+
+    Examples
+    --------
+    >>> usual_vigilance("far"), usual_vigilance(2000.0)
+    (0.05, 0.06)
+    """
+    return VIGILANCE["far" if goal_distance == "far" else "near"]
+
+
+def usual_learning(goal_distance: Distance | float = "near") -> TrainingSettings:
+    """Return how an agent is trained: as `TrainingSettings.goal` says, from far twice as long.
+
+    From far, two kicks in three miss even at best: telling the best action takes twice as long.
+
+    Examples
+    --------
+    >>> usual_learning("far").exploration
+    1000
+    """
+    if goal_distance == "far":
+        return TrainingSettings.goal(exploration=1000, exploitation=11_000)
+    return TrainingSettings.goal()
 
 
 class LookAround(gymnasium.Wrapper):
@@ -77,7 +97,7 @@ def make_task(goal_distance: Distance | float = "near", **options: Any) -> gymna
 
 
 def make_look_around(
-    goal_distance: Distance | float = "near", period: int | None = None
+    goal_distance: Distance | float = "near", period: int | None = None, **options: Any
 ) -> gymnasium.Env:
     """Return the task in which the agent segments its view of the goal; see `LookAround`.
 
@@ -88,17 +108,21 @@ def make_look_around(
     """
     usual = TrainingSettings.goal().period
     period = usual if period is None else _checks.integer("period", period, 1)
-    return LookAround(make_task(goal_distance, patience=period + 1))
+    return LookAround(make_task(goal_distance, **options | {"patience": period + 1}))
 
 
 def train(
     seed: int = 0,
     vigilance: float | None = None,
     *,
-    goal_distance: Distance = "near",
+    goal_distance: Distance | float = "near",
+    sensing: Sensing | None = None,
     learning: TrainingSettings | None = None,
+    segmenter: Segmenter | None = None,
+    learner: Learner | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
     progress: bool = True,
+    **options: Any,
 ) -> Arkaq:
     """Train an agent to score: it looks around, then it learns kick by kick.
 
@@ -108,15 +132,18 @@ def train(
         The agent's seed.
     vigilance : float, optional
         See `Arkaq`; by default the thesis's, .06 near and .05 far.
-    goal_distance : {"near", "far"}
+    goal_distance : {"near", "far"} or float
         Where the robot stands; see `arkaq_edu.envs.ScoreGoalEnv`.
+    sensing, segmenter, learner : optional
+        See `Arkaq`.
     learning : TrainingSettings, optional
-        How the agent is trained; by default ``TrainingSettings.goal()``, from far with twice the
-        cycles.
+        How the agent is trained; by default `usual_learning`.
     checkpoint : path, optional
         A file that keeps the run; an interrupted run continues from it. See `Arkaq.learn`.
     progress : bool
         Whether to show progress bars.
+    **options
+        Other options of the task, for example ``patience``.
 
     Returns
     -------
@@ -141,13 +168,22 @@ def train(
     >>> train(seed=1, learning=brief, progress=False).q.Q.shape[1]
     3
     """
-    start_of(goal_distance)
-    vigilance = VIGILANCE[goal_distance] if vigilance is None else vigilance
-    learning = _LEARNING[goal_distance] if learning is None else learning
-    agent = Arkaq(vigilance, task="goal", learning=learning, rng=seed)
-    look_around = make_look_around(goal_distance, agent.learning.period)
+    vigilance = usual_vigilance(goal_distance) if vigilance is None else vigilance
+    learning = usual_learning(goal_distance) if learning is None else learning
+    agent = Arkaq(
+        vigilance,
+        task="goal",
+        sensing=sensing,
+        learning=learning,
+        segmenter=segmenter,
+        learner=learner,
+        rng=seed,
+    )
+    look_around = make_look_around(goal_distance, agent.learning.period, **options)
     agent.segment(look_around, checkpoint=checkpoint, progress=progress)
-    return agent.learn(make_task(goal_distance), checkpoint=checkpoint, progress=progress)
+    return agent.learn(
+        make_task(goal_distance, **options), checkpoint=checkpoint, progress=progress
+    )
 
 
 def load_agent(goal_distance: Distance = "near") -> Arkaq:
