@@ -26,6 +26,7 @@ __getattr__, __dir__, __all__ = _lazy.attach(
         "mdp", "pomdp", "widgets",
     ],
     submod_attrs={
+        "_installation": ["check_installation"],
         "arkaq": ["Arkaq"],
         "art": ["ART1", "ART2", "ART2A", "EuclideanART"],
         "kalman": ["KalmanFilter", "constant_velocity", "kalman_batch"],
