@@ -248,7 +248,7 @@ def reproduce(out: Path, seeds: int, approaches: int, jobs: int) -> None:
 @click.option("--jobs", type=int, default=-1, show_default=True, help="Processes; -1: all cores.")
 @click.option("--cluster", metavar="ADDRESS", help="The scheduler of a Dask cluster to run on.")
 def study(file: Path, out: Path, jobs: int, cluster: str | None) -> None:
-    """Run a study: every combination of the settings in a TOML FILE, over many seeds.
+    """Run all combinations of settings in a TOML FILE.
 
     Writes results.csv and results.png. Each finished cell is kept, so an interrupted study
     continues when you call it again, and one with more values or seeds runs only what is new.
