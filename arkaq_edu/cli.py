@@ -262,32 +262,30 @@ def study(file: Path, out: Path, jobs: int, cluster: str | None) -> None:
 
     plan = read_plan(file)
     sys.path.insert(0, str(file.resolve().parent))  # parts of one's own stand beside the file
-    with _on_cluster(cluster, file.resolve().parent):
-        table = study(**plan, folder=out, jobs=jobs)
+    with _workers(cluster, jobs, file.resolve().parent) as workers:
+        table = study(**plan, folder=out, jobs=workers)
     with replacing(out / "results.png") as fresh:
         plot_study(table).ax[0].figure.savefig(fresh, dpi=150)
     click.echo(f"{out / 'results.csv'}: {len(table)} rows, drawn in {out / 'results.png'}")
 
 
 @contextmanager
-def _on_cluster(address: str | None, folder: Path) -> Iterator[None]:
-    """Send joblib's work to a Dask cluster, together with the modules in a folder."""
-    if address is None:
-        yield
+def _workers(cluster: str | None, jobs: int, folder: Path) -> Iterator[Any]:
+    """Yield a number of processes, or a Dask cluster that knows the modules in a folder."""
+    if cluster is None:
+        yield jobs
         return
     try:
         from dask.distributed import Client
     except ImportError:
         raise click.UsageError("--cluster needs Dask: pip install 'arkaq-edu[cluster]'") from None
-    from joblib import parallel_config
-
-    with Client(address) as client, parallel_config(backend="dask"):
+    with Client(cluster) as client:
         client.get_versions(
             check=True, packages=["arkaq_edu"]
-        )  # refuses workers of another version
+        )
         for module in sorted(folder.glob("*.py")):
-            client.upload_file(module, load=False)
-        yield
+            client.upload_file(str(module), load=False)
+        yield client.get_executor(pure=False)
 
 
 def _start_jupyterlab(folder: Path, no_browser: bool) -> None:

@@ -13,7 +13,7 @@ import os
 import platform
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from concurrent.futures import BrokenExecutor
+from concurrent.futures import BrokenExecutor, Executor, as_completed
 from contextlib import suppress
 from itertools import product
 from pathlib import Path
@@ -62,7 +62,7 @@ def study(
     task: Task = "approach",
     settings: Mapping[str, Any] | None = None,
     folder: str | os.PathLike[str] | None = None,
-    jobs: int = -1,
+    jobs: int | Executor = -1,
     retries: int = 1,
     progress: bool = True,
 ) -> pd.DataFrame:
@@ -96,9 +96,9 @@ def study(
     folder : path, optional
         Where to keep each cell as soon as it is finished, and the table. What is there already
         is not run again.
-    jobs : int
-        Number of processes; -1 for one a core. Inside ``joblib.parallel_config(backend="dask")``
-        the cells go to the workers of a Dask cluster instead.
+    jobs : int or concurrent.futures.Executor
+        Number of processes; -1 for one a core. Or what runs the cells, for example a Dask cluster:
+        ``dask.distributed.Client(address).get_executor()``.
     retries : int
         How many times a cell is tried again that failed, or whose process was killed.
     progress : bool
@@ -151,7 +151,7 @@ def study(
     0      6     7     eyes    6.0
     1     20     7     eyes   19.0
     """
-    if _checks.integer("jobs", jobs, -(2**31), 2**31) == 0:
+    if not isinstance(jobs, Executor) and _checks.integer("jobs", jobs, -(2**31), 2**31) == 0:
         raise ValueError("jobs must be a number of processes, or -1 for one a core, got 0")
     measure, cells = _measure(task), _cells(grid, settings or {}, seeds, task)
     for cell in {cell.key: cell for cell in cells if cell.seed == cells[0].seed}.values():
@@ -340,9 +340,15 @@ def _refuse(task: Task, measure: Callable[..., Any], cell: Cell) -> None:
 
 
 def _run(
-    measure: Callable[..., Any], cells: list[Cell], jobs: int
+    measure: Callable[..., Any], cells: list[Cell], jobs: int | Executor
 ) -> Iterator[tuple[str, dict[str, float] | Exception]]:
     """Yield each cell's key and values, or its error, as soon as it is finished."""
+    if isinstance(jobs, Executor):
+        futures = {jobs.submit(_try, measure, cell): cell.key for cell in cells}
+        for future in as_completed(futures):
+            lost = future.exception()  # Dask's, when workers died of the cell
+            yield (futures[future], lost) if isinstance(lost, Exception) else future.result()
+        return
     # In batches, a finished cell would wait for others before it is kept.
     parallel = joblib.Parallel(n_jobs=jobs, batch_size=1, return_as="generator_unordered")
     yield from parallel(joblib.delayed(_try)(measure, cell) for cell in cells)

@@ -7,9 +7,9 @@ import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
-import joblib
 import numpy as np
 import pandas as pd
 import pytest
@@ -97,11 +97,11 @@ def test_a_worker_killed_in_the_middle_changes_nothing(tmp_path):
 
     killer = threading.Thread(target=kill_a_worker)
     try:
-        with Client(scheduler_file=str(file)) as client, joblib.parallel_config(backend="dask"):
+        with Client(scheduler_file=str(file)) as client:
             client.wait_for_workers(2)
             killer.start()
-            slow = {"wait": 0.1}
-            study(grid, 5, task=draw, settings=slow, folder=there, progress=False)
+            plan = {"task": draw, "settings": {"wait": 0.1}, "folder": there, "progress": False}
+            study(grid, 5, jobs=client.get_executor(pure=False), **plan)
             killer.join()
             assert len(client.scheduler_info()["workers"]) == 1
     finally:
@@ -152,6 +152,27 @@ def test_a_cell_that_fails_or_is_killed_is_tried_again(tmp_path, kill, jobs):
     table = study({}, 3, settings=settings, **common)
     assert table.seed.tolist() == [0, 1, 2]
     assert table.value[1] == 2
+
+
+class Losing(ThreadPoolExecutor):
+    """Workers that die of the first cell, as on a cluster."""
+
+    first = True
+
+    def submit(self, *call, **options):
+        if not self.first:
+            return super().submit(*call, **options)
+        self.first, lost = False, Future()
+        lost.set_exception(ConnectionError("the worker died"))
+        return lost
+
+
+def test_a_cell_whose_workers_died_is_tried_again():
+    with Losing(2) as workers:
+        table = study({"mean": [0.0]}, 3, task=draw, jobs=workers, progress=False)
+    assert table.seed.tolist() == [0, 0, 1, 1, 2, 2]
+    with Losing(2) as workers, pytest.raises(RuntimeError, match=r"1 cells failed.*worker died"):
+        study({"mean": [0.0]}, 3, task=draw, jobs=workers, retries=0, progress=False)
 
 
 def test_what_fails_for_good_is_named_when_all_else_is_finished(tmp_path):
