@@ -15,10 +15,12 @@ NO_PYTHON = this course needs Python 3.11 to 3.15 with venv, and found none on t
 PLATFORMS := x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu x86_64-pc-windows-msvc \
 	aarch64-apple-darwin
 
-.PHONY: help install lab test test-lowest soak check reproduce bench notebooks lock wheels
+.PHONY: help install lab author slides grading student teaching test test-lowest soak check \
+	reproduce bench notebooks lock wheels
 
 help:
-	@echo 'make lab        open the course in JupyterLab'
+	@echo 'make lab        open the course in JupyterLab, in a copy of your own (arkaq-course)'
+	@echo 'make author     open the master notebooks, with the solutions'
 	@echo 'make test       run every check and every test'
 	@echo 'make check      run only the linter and the type checker'
 	@echo 'make reproduce  run the experiments of the thesis and write the report'
@@ -34,6 +36,32 @@ install: $(READY)
 
 lab: $(READY)
 	$(BIN)/arkaq lab
+
+# All that the slides load comes along, so that a lecture needs no network.
+slides: $(READY)
+	npm install --silent --no-save --prefix build/slides reveal.js@4 mathjax@2 requirejs@2
+	$(BIN)/arkaq slides build/slides
+
+# nbgrader stays out of the students' environment: JupyterLab would load its extensions.
+grading: $(BIN)/uv
+	$(BIN)/uv --no-config venv --quiet --clear --python $(BIN)/python build/grading
+	$(BIN)/uv --no-config pip install --quiet --python build/grading --requirement requirements.lock \
+		--no-deps
+	$(BIN)/uv --no-config pip install --quiet --python build/grading 'nbgrader>=0.9.5,<0.10'
+	$(BIN)/uv --no-config pip install --quiet --python build/grading --no-deps \
+		--no-build-isolation --editable .
+	build/grading/bin/python -m pytest tests/test_grading.py
+
+# Every chapter of the student's copy in a real Chromium, blank, and one exercise solved.
+student: $(READY)
+	EVERY_CHAPTER=1 $(BIN)/python -m pytest tests/browser/test_student.py
+
+# The list of known mistakes in TEACHING.md comes from the exercises' own tables.
+teaching: $(READY)
+	$(BIN)/python -c 'from arkaq_edu.release import write_mistakes; write_mistakes("TEACHING.md")'
+
+author: $(READY)
+	$(BIN)/python -m jupyterlab notebooks/00_start_here.ipynb
 
 test: check
 	$(BIN)/python -m pytest -n 2 --dist loadscope

@@ -11,8 +11,9 @@ from typing import Any
 import click
 
 from arkaq_edu import __version__
+from arkaq_edu._copy import copy_course
 from arkaq_edu._interrupts import LINE, STATUS, Interrupts
-from arkaq_edu._paths import FIRST_PAGE, copy_course, course_folder, in_repository
+from arkaq_edu._paths import FIRST_PAGE
 
 
 class OneLineErrors(click.Group):
@@ -63,26 +64,19 @@ def main(context: click.Context) -> None:
 
 
 @main.command()
-@click.argument("folder", required=False, type=click.Path(file_okay=False, path_type=Path))
+@click.argument("folder", default="arkaq-course", type=click.Path(file_okay=False, path_type=Path))
 @click.option("--copy-only", is_flag=True, help="Copy the course and stop.")
 @click.option("--no-browser", is_flag=True, help="Start JupyterLab without a browser.")
-def lab(folder: Path | None, copy_only: bool, no_browser: bool) -> None:
+def lab(folder: Path, copy_only: bool, no_browser: bool) -> None:
     """Open the course in JupyterLab, in a FOLDER of your own.
 
-    The course is copied to FOLDER (default: arkaq-course). Existing files are never overwritten:
-    run this again in the same folder to continue your work, or after an upgrade to get what is
-    new. In a clone of the repository, without a FOLDER, this opens the repository's own notebooks
-    where they are.
+    The course is copied to FOLDER (default: arkaq-course), without the solutions. What you write
+    there is never written over: run this again to continue your work, or after an upgrade to get
+    what is new. If both you and the course have changed a page, the new one is put beside yours.
     """
-    if folder is None and (copy_only or not in_repository()):
-        folder = Path("arkaq-course")
-    if folder is not None:
-        copied, kept = copy_course(folder)
-        click.echo(f"{folder}: files copied: {len(copied)}, your files kept: {len(kept)}")
-        for name in kept:
-            click.echo(f"  kept {name} (to get the course's own, rename it and run this again)")
+    click.echo(f"{folder}: {copy_course(folder)}")
     if not copy_only:
-        _start_jupyterlab((folder or course_folder()) / "notebooks", no_browser)
+        _start_jupyterlab(folder / "notebooks", no_browser)
 
 
 _seed = click.option("--seed", type=click.IntRange(0), default=0, show_default=True)
@@ -286,6 +280,30 @@ def _workers(cluster: str | None, jobs: int, folder: Path) -> Iterator[Any]:
         for module in sorted(folder.glob("*.py")):
             client.upload_file(str(module), load=False)
         yield client.get_executor(pure=False)
+
+
+@main.command()
+@click.argument("out", type=click.Path(file_okay=False, path_type=Path))
+def release(out: Path) -> None:
+    """Write the course as a teacher hands it out, into a new folder OUT.
+
+    OUT/student is the course without solutions, OUT/teacher.zip has the solutions and the answers
+    to the predictions, and OUT/nbgrader is a course folder for nbgrader. See TEACHING.md.
+    """
+    from arkaq_edu.release import release
+
+    for line in release(out):
+        click.echo(line)
+
+
+@main.command()
+@click.argument("out", default="slides", type=click.Path(file_okay=False, path_type=Path))
+def slides(out: Path) -> None:
+    """Write each chapter as slides for a lecture, into the folder OUT (default: slides)."""
+    from arkaq_edu.slides import slides
+
+    for page in slides(out):
+        click.echo(page)
 
 
 def _start_jupyterlab(folder: Path, no_browser: bool) -> None:

@@ -2,6 +2,7 @@
 
 import ast
 import inspect
+import json
 import os
 import re
 import shutil
@@ -22,7 +23,9 @@ from click.testing import CliRunner
 from packaging.requirements import Requirement
 
 import arkaq_edu as ae
-from arkaq_edu import _paths, cli
+from arkaq_edu import _paths, cli, widgets
+from arkaq_edu._copy import course_pages
+from arkaq_edu._student import students_page
 
 ROOT = Path(__file__).parents[1]
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
@@ -39,6 +42,7 @@ FLOORS = [
     "experiments",
     "figures",
     "widgets exercises",
+    "site release slides",
     "cli",
 ]
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms.split()}
@@ -257,17 +261,17 @@ def arkaq_from(wheel, *arguments, cwd):
     )  # fmt: skip
 
 
-def test_the_wheel_carries_the_course_and_gives_a_student_a_copy(wheel, tmp_path):
+def test_the_wheel_carries_the_students_course_and_no_solution(wheel, tmp_path):
     answer = arkaq_from(wheel, "lab", "--copy-only", cwd=tmp_path)
     assert answer.returncode == 0, answer.stderr
     copy = tmp_path / "arkaq-course"
-    for part in ("notebooks", "data"):
-        mine = _paths._files(ROOT / part)
-        theirs = _paths._files(copy / part)
-        assert [p.relative_to(ROOT) for p in mine] == [p.relative_to(copy) for p in theirs]
-        for own, copied in zip(mine, theirs, strict=True):
-            assert own.suffix == ".ipynb" or own.read_bytes() == copied.read_bytes()
-    assert (copy / "notebooks" / _paths.FIRST_PAGE).exists()
+    pages = course_pages()
+    files = {p.relative_to(copy).as_posix(): p.read_bytes() for p in copy.rglob("*.*")}
+    assert json.loads(files.pop(_paths.HANDED_OUT))["files"].keys() == pages.keys()
+    assert files == pages, "those that a clone gives"
+    notebooks = list(wheel.rglob("*.ipynb"))
+    assert len(notebooks) == len(list((ROOT / "notebooks").glob("*.ipynb")))
+    assert [p.name for p in notebooks if "SOLUTION" in p.read_text("utf-8")] == []
     assert not list(copy.rglob("*.py"))
     words = Path("arkaq_edu", "exercises", "kalman.toml")
     assert (wheel / words).read_bytes() == (ROOT / words).read_bytes()
@@ -283,31 +287,73 @@ def run(*arguments):
 
 def test_a_students_work_is_never_written_over(tmp_path):
     first = tmp_path / "notebooks" / _paths.FIRST_PAGE
-    run("lab", tmp_path, "--copy-only")
+    n = len(course_pages())
+    begin = f"{tmp_path}: "
+    assert run("lab", tmp_path, "--copy-only").output == (
+        f"{begin}{n} files copied; what you write in them is never written over\n"
+    )
     whole = first.read_bytes()
     extra = tmp_path / "notebooks" / "mine.ipynb"
     extra.write_text("mine")
+    assert run("lab", tmp_path, "--copy-only").output == (
+        f"{begin}nothing new: {n} files are there\n"
+    )
     first.write_text("my answer")
-    answer = run("lab", tmp_path, "--copy-only")
-    assert answer.exit_code == 0
-    assert "files copied: 0, your files kept: 1" in answer.output
-    assert f"kept notebooks/{_paths.FIRST_PAGE}" in answer.output
+    for _ in range(2):
+        assert run("lab", tmp_path, "--copy-only").output == (
+            f"{begin}nothing new: {n} files are there, 1 file changed by you and kept\n"
+        )
     assert first.read_text() == "my answer" and extra.read_text() == "mine"
 
     first.rename(first.with_name("old.ipynb"))
-    assert "files copied: 1, your files kept: 0" in run("lab", tmp_path, "--copy-only").output
+    assert run("lab", tmp_path, "--copy-only").output == f"{begin}1 file copied\n"
     assert first.read_bytes() == whole
 
 
-def test_a_student_gets_the_exercises_open_and_all_else_as_it_is(tmp_path):
+def test_an_upgrade_renews_what_is_untouched_and_puts_the_rest_beside_it(tmp_path, monkeypatch):
+    pages = {f"notebooks/{name}.ipynb": b"old" for name in ("touched", "untouched", "same")}
+    monkeypatch.setattr("arkaq_edu._copy.course_pages", lambda: pages)
     run("lab", tmp_path, "--copy-only")
-    exercises = 0
+    folder = tmp_path / "notebooks"
+    (folder / "touched.ipynb").write_text("mine")
+    (folder / "touched_new.ipynb").write_text("mine too")
+    pages |= {f"notebooks/{name}.ipynb": b"new" for name in ("touched", "untouched")}
+    assert run("lab", tmp_path, "--copy-only").output == (
+        f"{tmp_path}: 1 file brought up to date, 1 file changed by you and kept\n"
+        "  notebooks/touched.ipynb has a new version. Yours stays as it is; "
+        "the new one is notebooks/touched_new1.ipynb\n"
+    )
+    assert {p.stem: p.read_text() for p in folder.iterdir()} == {
+        "touched": "mine", "touched_new": "mine too", "touched_new1": "new", "untouched": "new",
+        "same": "old",
+    }  # fmt: skip
+    assert run("lab", tmp_path, "--copy-only").output == (
+        f"{tmp_path}: nothing new: 3 files are there, 1 file changed by you and kept\n"
+    ), "it is said once, and no third page comes"
+
+
+def test_a_copy_that_remembers_nothing_loses_nothing(tmp_path):
+    run("lab", tmp_path, "--copy-only")
+    page = tmp_path / "notebooks" / _paths.FIRST_PAGE
+    page.write_text("my answer")
+    memory = tmp_path / _paths.HANDED_OUT
+    memory.write_text("scribble")
+    answer = run("lab", tmp_path, "--copy-only")
+    assert answer.exit_code == 2 and "cannot be read; delete it" in answer.output
+    memory.unlink()
+    assert "has a new version" in run("lab", tmp_path, "--copy-only").output
+    assert page.read_text() == "my answer"
+
+
+def test_a_students_page_has_no_solution_and_no_output_but_pictures_of_widgets(tmp_path):
+    exercises, pictures = 0, 0
+    makers = [name for name in widgets.__all__ if name.islower()]
     for master in sorted((ROOT / "notebooks").glob("*.ipynb")):
         cells = nbformat.read(master, as_version=4).cells
-        copied = nbformat.read(tmp_path / "notebooks" / master.name, as_version=4).cells
-        for mine, theirs in zip(cells, copied, strict=True):
-            marks = mine.metadata.get("nbgrader", {})
-            if marks.get("solution"):
+        page = nbformat.reads(students_page(master.read_text("utf-8")), as_version=4)
+        nbformat.validate(page)
+        for mine, theirs in zip(cells, page.cells, strict=True):
+            if mine.metadata.get("nbgrader", {}).get("solution"):
                 exercises += 1
                 head, rest = mine.source.split("### BEGIN SOLUTION")
                 solution, tail = rest.split("### END SOLUTION")
@@ -315,12 +361,13 @@ def test_a_student_gets_the_exercises_open_and_all_else_as_it_is(tmp_path):
                 assert "NotImplementedError" in theirs.source
                 assert solution.strip() not in theirs.source
                 ast.parse(theirs.source)
-            elif marks.get("grade"):
-                assert mine.outputs and not theirs.outputs
-                assert mine.source == theirs.source
             else:
-                assert mine == theirs
-    assert exercises >= 12
+                assert mine.source == theirs.source
+            for output in theirs.get("outputs", []):
+                pictures += 1
+                name = theirs.source.strip().splitlines()[-1].partition("(")[0].split(".")[-1]
+                assert name in makers and output.data["image/png"]
+    assert exercises >= 34 and pictures >= len(makers)
 
 
 def test_an_interrupted_copy_leaves_no_half_of_a_file(tmp_path, monkeypatch):

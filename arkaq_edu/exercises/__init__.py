@@ -1,8 +1,9 @@
 """The exercises of the notebooks, by the name of what the student writes.
 
-``exercises.turn.check(turn)`` tries an answer on fresh random cases. It prints praise, or raises
-`ExerciseError` with what is wrong, and never gives the answer away. ``exercises.turn.hint()``
-prints the next of three hints, and ``exercises.turn.solution()`` an answer.
+``turn = exercises.turn.check(turn)`` tries an answer on fresh random cases. It prints praise, or
+what is wrong without giving the answer away, and returns the function to go on with: the student's
+if it is right, else the course's own. ``exercises.turn.hint()`` prints the next of three hints,
+``exercises.turn.solution()`` shows an answer, and `progress` says what is solved.
 
 What an exercise is: `arkaq_edu.exercises.exercise`. Each chapter has a module with the right
 answers and the random cases, and beside it a TOML file with the words: praise, hints, known wrong
@@ -11,11 +12,10 @@ answers.
 Examples
 --------
 >>> from arkaq_edu import exercises
->>> exercises.turn.check(lambda x, P, u, z, Q, R: (x + u, P + Q))
-Traceback (most recent call last):
-arkaq_edu.exercises.exercise.ExerciseError: the estimate is the prediction alone: the sighting \
-changes nothing
->>> exercises.expected_reward.check(lambda b, R: b @ R)
+>>> turn = exercises.turn.check(lambda x, P, u, z, Q, R: (x + u, P + Q))
+Not yet: the estimate is the prediction alone: the sighting changes nothing.
+This page goes on with the course's own turn. Change yours, then run both cells again.
+>>> expected_reward = exercises.expected_reward.check(lambda b, R: b @ R)
 Right: a mean over what the state may be. It is the true expected reward.
 >>> exercises.expected_reward.solution()  # doctest: +ELLIPSIS
 def expected_reward(b, R):
@@ -23,10 +23,11 @@ def expected_reward(b, R):
     return b @ R
 """
 
+from arkaq_edu.exercises import solved
 from arkaq_edu.exercises.approach import backup, boltzmann, reward
 from arkaq_edu.exercises.art import choose, match, norm_r
 from arkaq_edu.exercises.belief import correct, expected_reward, observation_chances, predict
-from arkaq_edu.exercises.exercise import Exercise, ExerciseError
+from arkaq_edu.exercises.exercise import Exercise
 from arkaq_edu.exercises.field import ball, pose, scoring_chance
 from arkaq_edu.exercises.goal import kicks_needed, state_bounds, worth
 from arkaq_edu.exercises.kalman import combine, nis, turn
@@ -49,4 +50,31 @@ CHAPTERS: dict[str, tuple[Exercise, ...]] = {
     "goal": (state_bounds, worth, kicks_needed),
 }
 
-__all__ = ["CHAPTERS", "Exercise", "ExerciseError", *(e.name for c in CHAPTERS.values() for e in c)]
+
+def progress(chapter: str | None = None) -> None:
+    """Print which exercises are solved, of one chapter or of all.
+
+    In a student's copy of the course this is kept from one session to the next.
+
+    Parameters
+    ----------
+    chapter : str, optional
+        The name of a chapter, such as "kalman".
+
+    Examples
+    --------
+    >>> progress("art")  # doctest: +ELLIPSIS
+    art: ... of 3 exercises solved...
+    """
+    done = solved.names()
+    for name in [chapter] if chapter else CHAPTERS:
+        names = [exercise.name for exercise in CHAPTERS[name]]
+        still = ", ".join(n for n in names if n not in done)
+        count = sum(n in done for n in names)
+        print(
+            f"{name}: {count} of {len(names)} exercises solved"
+            + (f"; still open: {still}" if still else ", that is all of them")
+        )
+
+
+__all__ = ["CHAPTERS", "Exercise", "progress", *(e.name for c in CHAPTERS.values() for e in c)]

@@ -7,17 +7,23 @@ from __future__ import annotations
 
 import copy
 import functools
+import html
 import inspect
+import os
+import sys
 import tomllib
-from collections.abc import Callable, Sequence
+import traceback
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from arkaq_edu._checks import shown
+from arkaq_edu.exercises import solved
+from arkaq_edu.exercises.words import as_floats, given, in_words, short
 
 #: A way to compute an answer from the arguments of a case.
 Rule = Callable[..., Any]
@@ -26,13 +32,40 @@ Cases = Callable[[np.random.Generator], Sequence[tuple[Any, ...]]]
 #: The argument tuples that one draw gives.
 Draws = list[tuple[Any, ...]]
 
+#: After so many wrong answers to an exercise, a hint is offered.
+FAILURES_BEFORE_A_HINT = 3
 
-class ExerciseError(AssertionError):
+
+class ExerciseError(Exception):
     """An answer that is not right yet. The message says what is wrong with it."""
 
-    def _render_traceback_(self) -> list[str]:
-        """Show only the message in a notebook: the code of the checks does not help a student."""
-        return [f"Not yet: {self}"]
+
+class Empty(ExerciseError):
+    """An answer that nobody has written yet."""
+
+
+class Verdict(NamedTuple):
+    """What one step of a check finds: the share of it that is right, and what is wrong, if any."""
+
+    share: float
+    problem: str
+    empty: bool = False
+
+
+class Solution(NamedTuple):
+    """A right answer. A notebook shows it folded, so that it is read only on purpose."""
+
+    name: str
+    source: str
+
+    def __repr__(self) -> str:
+        return self.source
+
+    def _repr_html_(self) -> str:
+        summary = f"A solution of <code>{self.name}</code>: click to unfold"
+        return (
+            f"<details><summary>{summary}</summary><pre>{html.escape(self.source)}</pre></details>"
+        )
 
 
 def ask(function: Callable[..., Any], *arguments: Any) -> Any:
@@ -57,27 +90,33 @@ def ask(function: Callable[..., Any], *arguments: Any) -> Any:
     if not callable(function):
         raise ExerciseError(f"pass the function by its name, without (...): got {function!r}")
     name = getattr(function, "__name__", "your function")
-    given: list[Any] = [
+    copies: list[Any] = [
         a if isinstance(a, np.random.Generator) else copy.deepcopy(a) for a in arguments
     ]
     try:
         with np.errstate(all="ignore"):
-            answer = function(*given)
+            answer = function(*copies)
     except NotImplementedError:
-        raise ExerciseError(
-            f"{name} is still empty: write its body, run its cell, then run this check again"
-        ) from None
+        raise Empty(f"{name} is still empty: write its body and run its cell") from None
     except SystemExit:
         raise ExerciseError(f"{name} leaves Python: return the answer instead of exit()") from None
     except Exception as error:
-        asked = ", ".join(map(_short, arguments))
-        problem = f"{type(error).__name__}: {error}"
-        raise ExerciseError(f"{name}({asked}) stopped with {problem}") from error
+        asked = ", ".join(map(short, arguments))
+        asked = "..." if "\n" in asked or len(asked) > 90 else asked
+        problem = f"{name}({asked}) stopped with {type(error).__name__}: {error}"
+        raise ExerciseError(problem + _where(error, function)) from error
     if answer is None:
         raise ExerciseError(f"{name} returned nothing: does it end with a `return`?")
-    if not all(np.array_equal(a, b) for a, b in zip(arguments, given, strict=True)):
+    if not all(np.array_equal(a, b) for a, b in zip(arguments, copies, strict=True)):
         raise ExerciseError(f"{name} changes its arguments: let it work on a copy")
     return answer
+
+
+def _where(error: Exception, function: Callable[..., Any]) -> str:
+    """Name the line of the student's own code at which it stopped."""
+    file = getattr(getattr(function, "__code__", None), "co_filename", None)
+    lines = [f for f in traceback.extract_tb(error.__traceback__) if f.filename == file]
+    return f"\n    in line {lines[-1].lineno} of your cell: {lines[-1].line}" if lines else ""
 
 
 @dataclass
@@ -119,9 +158,11 @@ class Part:
         return [self._same(*pair) for pair in zip(answers, others, strict=True)]
 
     def _same(self, answer: Any, other: Any) -> bool:
-        found, wanted = _floats(answer), _floats(other)
+        found, wanted = as_floats(answer), as_floats(other)
         if found is None or wanted is None:
             return False
+        if found.size == wanted.size == 1:
+            found = found.reshape(wanted.shape)
         return found.shape == wanted.shape and bool(np.all(self.close(found, wanted)))
 
 
@@ -155,23 +196,21 @@ class Exercise:
     ...     tell={"found < wanted": "two times {x:.0f} is more than {found:.0f}"},
     ... )
     >>> exercise = Exercise(twice, "Right: twice.", ("Add.", "x + ...", "x + x"), (part,))
-    >>> exercise.check(lambda x: x + x)
+    >>> twice = exercise.check(lambda x: x + x)
     Right: twice.
-    >>> exercise.check(lambda x: x * x)
-    Traceback (most recent call last):
-    arkaq_edu.exercises.exercise.ExerciseError: you square
-    >>> exercise.check(lambda x: x, rng=1)
-    Traceback (most recent call last):
-    arkaq_edu.exercises.exercise.ExerciseError: two times 6 is more than 6
-    >>> exercise.check(lambda x: [x, x])
-    Traceback (most recent call last):
-    arkaq_edu.exercises.exercise.ExerciseError: twice should return one number, not 2 numbers
+    >>> twice = exercise.check(lambda x: x * x)
+    Not yet: you square.
+    This page goes on with the course's own twice. Change yours, then run both cells again.
+    >>> twice(8)
+    16
+    >>> exercise.problem(lambda x: x, rng=1)
+    'two times 6 is more than 6'
+    >>> exercise.problem(lambda x: [x, x])
+    'twice should return one number, not 2 numbers'
     >>> exercise.hint()
     Hint 1 of 3: Add.
     >>> exercise
     twice(x): Return two times x. There are .check(twice), .hint() and .solution().
-    >>> exercise(4)
-    8
     """
 
     right: Rule
@@ -182,6 +221,7 @@ class Exercise:
     returns: str | Sequence[str] = "one number"
     points: int = 2
     _hinted: int = field(default=0, init=False)
+    _failed: int = field(default=0, init=False)
 
     def __post_init__(self) -> None:
         functools.update_wrapper(self, self.right)
@@ -197,10 +237,11 @@ class Exercise:
         rest = f"There are .check({self.name}), .hint() and .solution()."
         return f"{self.name}{inspect.signature(self.right)}: {asks} {rest}"
 
-    def check(
-        self, function: Callable[..., Any], rng: np.random.Generator | int | None = None
-    ) -> None:
-        """Try a student's function on fresh cases, and print praise if it is right.
+    def check(self, function: Rule, rng: np.random.Generator | int | None = None) -> Rule:
+        """Try a student's function, say what is wrong with it, and return one that is right.
+
+        When nbgrader runs the page, the points are shown too, as nbgrader wants them: as the
+        output of the cell. Then the cases are always the same.
 
         Parameters
         ----------
@@ -209,34 +250,82 @@ class Exercise:
         rng : numpy.random.Generator or int, optional
             Where the random cases come from.
 
-        Raises
-        ------
-        ExerciseError
-            With what is wrong with the answer.
+        Returns
+        -------
+        callable
+            The student's function if it is right, else the course's own. So a page can be read,
+            and run, to its end.
         """
+        graded = "NBGRADER_EXECUTION" in os.environ
+        steps = self._steps(function, 0 if graded and rng is None else rng)
+        if graded:
+            steps = list(steps)
+        wrong = next((step for step in steps if step.problem), None)
+        if wrong:
+            self._failed += not wrong.empty
+            print(f"Not yet: {wrong.problem}{'' if wrong.problem[-1] in '.?' else '.'}")
+            print(
+                f"This page goes on with the course's own {self.name}. "
+                "Change yours, then run both cells again."
+            )
+            if self._failed >= FAILURES_BEFORE_A_HINT:
+                print(f"Stuck? Write exercises.{self.name}.hint() in a new cell and run it.")
+        else:
+            self._failed = 0
+            solved.add(self.name)
+            print(self.praise)
+        if graded:
+            sys.displayhook(self._points(steps))
+        return self.right if wrong else function
+
+    def problem(self, function: Rule, rng: np.random.Generator | int | None = None) -> str:
+        """Return what is wrong with a function first, on fresh cases; nothing if it is right."""
+        return next((step.problem for step in self._steps(function, rng) if step.problem), "")
+
+    def earned(self, function: Rule, rng: np.random.Generator | int | None = None) -> float:
+        """Return the points that a function earns on fresh cases.
+
+        Each step of the check counts alike. A wrong one earns the share of its results that are
+        right, if there are several. If there is one it earns half, if at least half of the tries
+        are right and no known mistake explains them.
+        """
+        return self._points(self._steps(function, rng))
+
+    def _points(self, steps: Iterable[Verdict]) -> float:
+        return round(self.points * float(np.mean([step.share for step in steps])), 2)
+
+    def _steps(self, function: Rule, rng: np.random.Generator | int | None) -> Iterator[Verdict]:
+        """Try a function, one step of the check after the other."""
+        if function is self.right:
+            problem = f"this is the course's own {self.name}: run the cell with your answer first"
+            yield Verdict(0.0, problem, empty=True)
+            return
         rng = np.random.default_rng(rng)
         cases: Sequence[tuple[Any, ...]] = []
         known = ""
         for part in self.parts:
             cases = part.cases(rng) if part.cases else cases
-            words = self._judge(part, function, cases)
-            if words:
-                raise ExerciseError(known + words if part.of else words)
+            try:
+                with warnings.catch_warnings(action="ignore"):
+                    share, words = self._try(part, function, cases)
+                yield Verdict(share, known + words if words and part.of else words)
+            except ExerciseError as error:
+                yield Verdict(0.0, str(error), isinstance(error, Empty))
             known = f"the {part.of} is right; "
-        print(self.praise)
 
-    def hint(self) -> None:
-        """Print the next hint. After the last one, say how to see the solution."""
+    def hint(self) -> Solution | None:
+        """Print the next hint. After the last one, return the solution, which a notebook folds."""
         if self._hinted == len(self.hints):
-            print(f"There are no more hints. {self.name}.solution() shows an answer.")
-            return
+            print("There are no more hints. Here is a solution:")
+            return self.solution()
         self._hinted += 1
         print(f"Hint {self._hinted} of {len(self.hints)}: {self.hints[self._hinted - 1]}")
+        return None
 
-    def solution(self) -> None:
-        """Print a right answer."""
+    def solution(self) -> Solution:
+        """Return a right answer, which a notebook shows folded."""
         source = inspect.getsource(self.right)
-        print(source[source.index("def ") :].rstrip())
+        return Solution(self.name, source[source.index("def ") :].rstrip())
 
     def function(self, expression: str) -> Rule:
         """Return the function of this exercise's arguments that an expression of ours computes."""
@@ -245,15 +334,17 @@ class Exercise:
 
     def numbers(self, answer: Any, *shapes: tuple[int, ...]) -> NDArray[np.float64]:
         """Return an answer as an array of one of these shapes, or say what it is instead."""
-        found = _floats(answer)
+        found = as_floats(answer)
         if found is None:
-            raise ExerciseError(f"{self.name} should return numbers, not {_short(answer)}")
+            raise ExerciseError(f"{self.name} should return numbers, not {short(answer)}")
+        if found.size == 1 and shapes == ((),):
+            found = found.reshape(())
         if found.shape not in shapes:
             expected = self._expected(shapes[0])
-            got = _in_words(found.shape)
+            got = in_words(found.shape)
             raise ExerciseError(f"{self.name} should return {expected}, not {got}")
         if not np.isfinite(found).all():
-            raise ExerciseError(f"{self.name} returned {_short(found)}: not all of it is a number")
+            raise ExerciseError(f"{self.name} returned {short(found)}: not all of it is a number")
         return found
 
     def _expected(self, shape: tuple[int, ...]) -> str:
@@ -261,48 +352,79 @@ class Exercise:
             *first, last = self.returns
             count = {2: "two", 3: "three"}[len(self.returns)]
             return f"{count} numbers: {', '.join(first)} and {last}"
-        return self.returns + (f", here {_in_words(shape)}" if shape else "")
+        return self.returns + (f", here {in_words(shape)}" if shape else "")
 
     def _evaluate(self, expression: str, names: dict[str, Any]) -> Any:
         # Expressions are data of this package, never input.
         return eval(expression, self.right.__globals__ | names)  # type: ignore[attr-defined]
 
-    def _judge(
-        self, part: Part, function: Callable[..., Any], cases: Sequence[tuple[Any, ...]]
-    ) -> str | None:
-        """Return what is wrong with the answers to the cases, or None."""
+    def _try(
+        self, part: Part, function: Rule, cases: Sequence[tuple[Any, ...]]
+    ) -> tuple[float, str]:
+        """Return what share of a step is right, and what is wrong with it, or nothing."""
         answers = [part.answer(function, *case) for case in cases]
-        wanted = [np.asarray((part.right or self.right)(*case), dtype=float) for case in cases]
+        wanted = [np.asarray((part.right or self.right)(*case)) for case in cases]
         if part.of:
             k = self.returns.index(part.of)
             answers = [self.numbers(answer, (len(self.returns),))[k] for answer in answers]
             wanted = [value[k] for value in wanted]
         good = part.agree(answers, wanted)
         if all(good):
-            return None
+            return 1.0, ""
         # Rules come before the shape: some wrong answers have another shape, and better words.
         for expression, words in part.wrong.items():
             rule = self.function(expression)
             if all(part.agree(answers, [rule(*case) for case in cases])):
-                return words
+                return self._share(part, answers, wanted, [0.0]), words
         found = [
             self.numbers(answer, value.shape) for answer, value in zip(answers, wanted, strict=True)
         ]
-        first = good.index(False)
-        one, other = found[first], wanted[first]
-        case = dict(zip(inspect.signature(self.right).parameters, cases[first], strict=False))
-        names = {"found": one, "wanted": other, "otherwise": True, **case}
+        # What a single try gives is judged number by number: it may stand for thousands of calls.
+        right = good if len(good) > 1 else part.close(found[0], wanted[0])
+        share = self._share(part, found, wanted, right)
+        if not part.right and any(
+            all(map(np.allclose, found, [value.round(digits) for value in wanted]))
+            for digits in range(4)
+        ):
+            return share, "you round the answer: return it with all its digits"
+        tries = zip(found, wanted, cases, good, strict=True)
+        wrong = [(one, other, case) for one, other, case, right in tries if not right]
+        one, other, case = wrong[0]
+        names = dict(zip(inspect.signature(self.right).parameters, case, strict=False))
+        names = {"found": one, "wanted": other, "otherwise": True, **names}
         for condition, words in part.tell.items():
             if self._evaluate(condition, names):
-                return self._evaluate(f"f{words!r}", names)
-        place = int(np.argmin(part.close(one, other)))
+                return share, self._evaluate(f"f{words!r}", names)
+        smallest = min(wrong, key=lambda trio: sum(map(np.size, trio[-1])))
+        return share, self._example(part, sum(good), len(cases), *smallest)
+
+    def _share(
+        self, part: Part, answers: Sequence[Any], wanted: Sequence[Any], right: Any
+    ) -> float:
+        """Return what a wrong step earns: see `Exercise.earned`."""
+        rows = [as_floats(answer) for answer in answers]
+        several = not (part.of or part.right or isinstance(self.returns, str))
+        if several and all(row is not None and row.shape == (len(self.returns),) for row in rows):
+            return float(np.mean(np.all(part.close(np.array(rows), np.array(wanted)), axis=0)))
+        return 0.5 if np.mean(right) >= 0.5 else 0.0
+
+    def _example(
+        self, part: Part, good: int, tries: int, one: Any, other: Any, case: tuple[Any, ...]
+    ) -> str:
+        """Show one small try that is wrong, and what to look at in it."""
         name = f"the {part.of}" if part.of else self.name
+        place = int(np.argmin(part.close(one, other)))
         if not part.of and not isinstance(self.returns, str):
             name = self.returns[place]
-        yours, ours = one.flat[place], other.flat[place]
+        says = f"{name} is right in {good} of {tries} tries"
+        if part.right:  # what was judged is not what the function returned
+            return says
+        which = f"its number {place + 1} is" if one.size > 1 else "which is"
+        side = "too large" if one.flat[place] > other.flat[place] else "too small"
         return (
-            f"{name} is right in {sum(good)} of {len(cases)} tries; one of yours, {yours:.5g}, is "
-            f"too {'large' if yours > ours else 'small'}"
+            f"{says}. In this one it is wrong:\n{given(inspect.signature(self.right), case)}\n"
+            f"    yours: {short(one)}, {which} {'wrong' if other.dtype.kind in 'iu' else side}\n"
+            "Work this one out by hand, a line at a time, and compare."
         )
 
 
@@ -367,37 +489,12 @@ def index(
     def answer(function: Callable[..., Any], *case: Any) -> int:
         found, n = ask(function, *case), count(*case)
         value = np.asarray(found)
+        value = value.reshape(()) if value.size == 1 else value
         if value.shape != () or value.dtype.kind not in "iu" or not 0 <= value < n:
             raise ExerciseError(
                 f"the answer should be the index of a {thing}, a whole number from 0 to {n - 1}, "
-                f"not {_short(found)}: {hint}"
+                f"not {short(found)}: {hint}"
             )
         return int(value)
 
     return answer
-
-
-def _floats(answer: Any) -> NDArray[np.float64] | None:
-    """Return an answer as floats, or None for text, complex numbers and what has no one shape."""
-    try:
-        found = np.asarray(answer)
-        return found.astype(float) if found.dtype.kind in "biufO" else None
-    except (TypeError, ValueError, OverflowError):
-        return None
-
-
-def _in_words(shape: tuple[int, ...]) -> str:
-    if shape == ():
-        return "one number"
-    if shape == (1,):
-        return "an array with one number"
-    return f"{shape[0]} numbers" if len(shape) == 1 else f"an array of shape {shape}"
-
-
-def _short(value: Any) -> str:
-    if isinstance(value, np.random.Generator):
-        return "rng"
-    if not isinstance(value, np.ndarray):
-        return shown(value)
-    text = np.array2string(value, precision=3, threshold=6)
-    return text if len(text) <= 60 else text[:57] + "..."

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 import uuid
+from contextlib import contextmanager
 from pathlib import Path
 from urllib.error import URLError
 from urllib.request import urlopen
@@ -42,26 +43,42 @@ def lab(tmp_path_factory):
     home = tmp_path_factory.mktemp("lab")
     course = home / "course"
     shutil.copytree(NOTEBOOKS, course, ignore=shutil.ignore_patterns(".*", "__pycache__"))
+    command = [
+        sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root",
+        f"--ServerApp.root_dir={course}",
+    ]  # fmt: skip
+    with serving(command, home, course) as address:
+        yield address
+
+
+@contextmanager
+def serving(command, home, folder, **variables):
+    """The address of what a command that starts JupyterLab in a folder serves."""
     for name, values in SETTINGS.items():
         file = home / "settings" / "@jupyterlab" / f"{name}.jupyterlab-settings"
         file.parent.mkdir(parents=True)
         file.write_text(json.dumps(values))
+    (home / "config").mkdir()
+    (home / "config" / "jupyter_lab_config.py").write_text(
+        "c.ServerApp.ip = '127.0.0.1'\nc.ServerApp.port_retries = 0\n"
+        "c.LabApp.expose_app_in_browser = True\n"
+    )
     folders = {
         "IPYTHONDIR": "ipython", "JUPYTERLAB_SETTINGS_DIR": "settings",
         "JUPYTERLAB_WORKSPACES_DIR": "workspaces", "JUPYTER_CONFIG_DIR": "config",
         "JUPYTER_DATA_DIR": "data", "JUPYTER_RUNTIME_DIR": "runtime",
     }  # fmt: skip
-    environment = os.environ | {name: str(home / folder) for name, folder in folders.items()}
     with socket.create_server(("127.0.0.1", 0)) as probe:
         port = probe.getsockname()[1]
     token = uuid.uuid4().hex
-    command = [
-        sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root", "--ip=127.0.0.1",
-        f"--port={port}", "--ServerApp.port_retries=0", f"--IdentityProvider.token={token}",
-        f"--ServerApp.root_dir={course}", "--LabApp.expose_app_in_browser=True",
-    ]  # fmt: skip
+    environment = (
+        os.environ
+        | {name: str(home / place) for name, place in folders.items()}
+        | {"JUPYTER_PORT": str(port), "JUPYTER_TOKEN": token}
+        | variables
+    )
     log = (home / "lab.log").open("w+")
-    server = subprocess.Popen(command, cwd=course, env=environment, stdout=log, stderr=log)
+    server = subprocess.Popen(command, cwd=folder, env=environment, stdout=log, stderr=log)
     try:
         _wait_for(f"http://127.0.0.1:{port}/api/status?token={token}", server, log)
         yield f"http://127.0.0.1:{port}/lab/workspaces/{{workspace}}/tree/{{path}}?token={token}"
@@ -101,6 +118,13 @@ def open_notebook(lab, chromium):
 
     Options are those of a window: ``viewport``, ``device_scale_factor``.
     """
+    with opening(lab, chromium) as open_:
+        yield open_
+
+
+@contextmanager
+def opening(address, chromium):
+    """A function that opens the notebooks which JupyterLab serves."""
     windows = []
 
     def open_(name, *, run=True, **options):
@@ -109,10 +133,10 @@ def open_notebook(lab, chromium):
         windows.append(window)
         window.set_default_timeout(1000 * PATIENCE)
         page = window.new_page()
-        page.goto(lab.format(workspace=uuid.uuid4().hex, path=name))
+        page.goto(address.format(workspace=uuid.uuid4().hex, path=name))
         page.evaluate(READY)
         if run:
-            page.evaluate("jupyterapp.commands.execute('notebook:run-all-cells')")
+            page.evaluate(RUN_ALL)
         return page
 
     yield open_
@@ -121,6 +145,7 @@ def open_notebook(lab, chromium):
         window.close()
 
 
+RUN_ALL = "jupyterapp.commands.execute('notebook:run-all-cells')"
 READY = """async () => {
     const soon = () => new Promise((done) => setTimeout(done, 50));
     while (!window.jupyterapp) await soon();

@@ -1,11 +1,12 @@
 """The checks of the ball problem's exercises: right passes, wrong is told in what way."""
 
+import re
+
 import numpy as np
 import pytest
 from scipy.special import softmax
 
 from arkaq_edu import exercises
-from arkaq_edu.exercises import ExerciseError
 
 
 def reward(distance, orientation):
@@ -79,7 +80,6 @@ WRONG = [
     (exercises.reward, lambda d, o: reward(d, np.nextafter(abs(o), 1)), r"exactly \.05 rad"),
     (exercises.reward, lambda d, o: reward(o, d), "a ball .* mm away .* is worth"),
     (exercises.reward, lambda d, o: reward(d, o) / 100, "is worth 1[05]0, yours is 1"),
-    (exercises.reward, lambda d, o: [reward(d, o)], "not an array with one"),
     (exercises.reward, lambda d, o: "much", "numbers, not 'much'"),
     (exercises.reward, lambda d, o: None, "return"),
     (exercises.reward, not_written, "still empty"),
@@ -148,5 +148,4 @@ WRONG = [
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize(("exercise", "answer", "hint"), WRONG)
 def test_a_wrong_answer_is_told_what_is_wrong(exercise, answer, hint, seed):
-    with pytest.raises(ExerciseError, match=hint):
-        exercise.check(answer, rng=seed)
+    assert re.search(hint, exercise.problem(answer, rng=seed))

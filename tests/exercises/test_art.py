@@ -1,10 +1,11 @@
 """The checks of the exercises on adaptive resonance: right passes, wrong is told in what way."""
 
+import re
+
 import numpy as np
 import pytest
 
 from arkaq_edu import exercises
-from arkaq_edu.exercises import ExerciseError
 
 
 def match(pattern, template):
@@ -113,5 +114,4 @@ WRONG = [
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize(("exercise", "answer", "hint"), WRONG)
 def test_a_wrong_answer_is_told_what_is_wrong(exercise, answer, hint, seed):
-    with pytest.raises(ExerciseError, match=hint):
-        exercise.check(answer, rng=seed)
+    assert re.search(hint, exercise.problem(answer, rng=seed))

@@ -1,10 +1,11 @@
 """The checks of the belief exercises: right answers pass, wrong ones are told in what way."""
 
+import re
+
 import numpy as np
 import pytest
 
 from arkaq_edu import exercises
-from arkaq_edu.exercises import ExerciseError
 
 
 def predict(b, T):
@@ -65,7 +66,7 @@ WRONG = [
     (
         exercises.predict,
         lambda b, T: b[:, np.newaxis] * T,
-        r"not an array of shape \(\d, \d\)",
+        r"not \d rows of \d numbers",
     ),
     (exercises.predict, lambda b, T: 2 * (b @ T), "too large"),
     (exercises.predict, lambda b, T: b @ T / 2, "too small"),
@@ -119,5 +120,4 @@ WRONG = [
 @pytest.mark.parametrize(("exercise", "answer", "hint"), WRONG)
 @pytest.mark.filterwarnings("ignore:(divide|invalid):RuntimeWarning")
 def test_a_wrong_answer_is_told_what_is_wrong(exercise, answer, hint, seed):
-    with pytest.raises(ExerciseError, match=hint):
-        exercise.check(answer, rng=seed)
+    assert re.search(hint, exercise.problem(answer, rng=seed))

@@ -2,7 +2,11 @@
 
 import dataclasses
 import importlib
+import json
+import linecache
+import re
 import tomllib
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +15,7 @@ from scipy.stats import norm
 
 from arkaq_edu import exercises
 from arkaq_edu.art import EuclideanART
-from arkaq_edu.exercises import Exercise, ExerciseError
+from arkaq_edu.exercises import Exercise, solved
 from arkaq_edu.mdp import MDP, QLearner
 
 ALL = [exercise for chapter in exercises.CHAPTERS.values() for exercise in chapter]
@@ -42,25 +46,23 @@ def test_a_known_wrong_answer_gets_its_own_words(exercise, part, expression, wor
     alone = Exercise(
         exercise.right, exercise.praise, exercise.hints, (part,), returns=exercise.returns
     )
-    with pytest.raises(ExerciseError) as caught:
-        alone.check(answer, rng=0)
-    assert str(caught.value) == words
+    assert alone.problem(answer, rng=0) == words
 
 
 @pytest.mark.parametrize("exercise", ALL)
 def test_an_exercise_says_what_is_asked_and_gives_three_hints_and_a_solution(exercise, capsys):
     assert repr(exercise).startswith(f"{exercise.name}(") and ": Return " in repr(exercise)
     fresh = dataclasses.replace(exercise)
-    for _ in range(4):
-        fresh.hint()
+    hints = [fresh.hint() for _ in range(4)]
     lines = capsys.readouterr().out.splitlines()
     assert lines[:3] == [f"Hint {n} of 3: {hint}" for n, hint in enumerate(exercise.hints, 1)]
-    assert lines[3:] == [f"There are no more hints. {exercise.name}.solution() shows an answer."]
-    exercise.solution()
+    assert lines[3:] == ["There are no more hints. Here is a solution:"]
+    assert hints[:3] == [None] * 3 and hints[3] == exercise.solution()
     room = {"np": np, "norm": norm}
-    exec(capsys.readouterr().out, room)
-    exercise.check(room[exercise.name], rng=0)
-    assert capsys.readouterr().out == exercise.praise + "\n"
+    exec(repr(exercise.solution()), room)
+    assert exercise.problem(room[exercise.name], rng=0) == ""
+    page = exercise.solution()._repr_html_()
+    assert page.startswith("<details><summary>") and "open" not in page.split(">")[0]
 
 
 @pytest.mark.parametrize("chapter", exercises.CHAPTERS)
@@ -115,9 +117,9 @@ def test_a_typo_in_the_words_is_found_when_they_are_read(
         (tmp_path / f"{name}.py").write_text(TWICE)
         (tmp_path / f"{name}.toml").write_text(words)
     twice = importlib.import_module("rightchapter").twice
-    with pytest.raises(ExerciseError, match=r"3\.0 times 3\.0 is 9\.0"):
-        twice.check(lambda x: (2 * x, 7.0))
-    twice.check(twice.right)
+    problem = twice.problem(lambda x: (2 * x, 7.0))
+    assert problem == "the double is right; 3.0 times 3.0 is 9.0"
+    twice.check(lambda x: (2 * x, x * x))
     assert capsys.readouterr().out == "Right.\n"
     with pytest.raises((ValueError, SyntaxError), match=message):
         importlib.import_module("typochapter")
@@ -132,16 +134,152 @@ def test_fresh_inputs_come_from_the_given_generator(exercise):
         return exercise(*arguments)
 
     for seed in (1, 1, 2):
-        exercise.check(spy, rng=seed)
+        exercise.problem(spy, rng=seed)
     once = len(asked) // 3
     assert asked[:once] == asked[once : 2 * once] != asked[2 * once :]
 
 
-def test_a_notebook_shows_the_message_and_no_traceback():
-    with pytest.raises(ExerciseError) as caught:
-        exercises.nearest.check(lambda x, m: 0)
-    assert caught.value._render_traceback_() == [f"Not yet: {caught.value}"]
-    assert issubclass(ExerciseError, AssertionError), "an autograder counts a failed assertion"
+# What a student reads
+
+
+@pytest.fixture
+def nis():
+    """The exercise as nobody has tried it yet."""
+    return dataclasses.replace(exercises.nis)
+
+
+def test_the_third_wrong_answer_is_offered_a_hint_and_a_blank_one_is_not(nis, capsys):
+    def blank(v, S):
+        raise NotImplementedError
+
+    said = []
+    for answer in [blank] * 4 + [lambda v, S: v @ v] * 3:
+        assert nis.check(answer) is nis.right
+        said.append(capsys.readouterr().out)
+    assert ["exercises.nis.hint()" in words for words in said] == [False] * 6 + [True]
+    assert all("goes on with the course's own nis" in words for words in said)
+
+    def answer(v, S):
+        return v @ np.linalg.solve(S, v)
+
+    assert nis.check(answer) is answer
+    nis.check(blank)
+    nis.check(lambda v, S: v @ v)
+    assert "hint" not in capsys.readouterr().out, "after a right answer the count starts again"
+
+
+def test_the_courses_own_function_is_no_answer(nis, capsys, monkeypatch):
+    monkeypatch.setattr(solved, "_session", set())
+    nis.check(nis.check(lambda v, S: 0 * v @ v))
+    assert "run the cell with your answer first" in capsys.readouterr().out
+    assert solved.names() == set()
+
+
+def test_a_wrong_answer_that_nobody_foresaw_is_shown_one_small_input(nis):
+    problem = nis.problem(lambda v, S: 7.0, rng=0)
+    lines = problem.splitlines()
+    assert lines[0] == "nis is right in 0 of 8 tries. In this one it is wrong:"
+    assert re.match(r" +innovation = \[-?[\d.]+, -?[\d.]+\]$", lines[1]), "a small one: 2, not 3"
+    assert re.match(r" +S = \[\[.*, .*\],$", lines[2])
+    assert re.match(r"    yours: 7, which is too (large|small)$", lines[4])
+    assert lines[5].startswith("Work this one out by hand")
+
+
+def test_a_crash_names_the_students_line(nis):
+    source = "def nis(v, S):\n    weight = 1 / S\n    return v @ weight @ u\n"
+    room = {}
+    exec(compile(source, "their cell", "exec"), room)
+    linecache.cache["their cell"] = (len(source), None, source.splitlines(True), "their cell")
+    problem = nis.problem(room["nis"], rng=0)
+    assert "stopped with NameError: name 'u' is not defined" in problem
+    assert problem.endswith("in line 3 of your cell: return v @ weight @ u")
+
+
+@pytest.mark.parametrize(
+    ("shape", "says"),
+    [((2,), "2 numbers"), ((1, 2), "1 row of 2 numbers")],
+)
+def test_what_is_asked_and_what_came_is_said_in_words(nis, shape, says):
+    problem = nis.problem(lambda v, S: np.zeros(shape), rng=0)
+    assert problem == f"nis should return one number, not {says}"
+    both = exercises.turn.problem(lambda *case: 3.0, rng=0)
+    assert both == "turn should return two numbers: estimate and variance, not one number"
+
+
+def test_a_right_one_by_one_answer_and_one_that_warns_are_accepted(nis):
+    def answer(v, S):
+        warnings.warn("an old habit", DeprecationWarning, stacklevel=1)
+        return v[None] @ np.linalg.inv(S) @ v[:, None]
+
+    assert nis.problem(answer) == ""
+
+
+def test_a_rounded_answer_is_told_so(nis):
+    assert "you round the answer" in nis.problem(lambda v, S: round(exercises.nis(v, S), 2))
+
+
+# What nbgrader reads
+
+
+@pytest.mark.parametrize("exercise", ALL)
+def test_blank_and_wrong_answers_earn_nothing_and_right_ones_all(exercise):
+    def blank(*case):
+        raise NotImplementedError
+
+    assert exercise.earned(blank, rng=0) == 0.0
+    assert exercise.earned(lambda *case: -1.2345, rng=0) == 0.0
+    assert exercise.earned(lambda *case: exercise(*case), rng=0) == exercise.points
+
+
+def test_parts_count():
+    turn, bounds, nis = exercises.turn, exercises.state_bounds, exercises.nis
+    assert turn.points == 4 and bounds.points == 3 and nis.points == 2
+    assert turn.earned(lambda *case: (turn(*case)[0], 7.0)) == 2.0, "half of each step"
+    assert turn.earned(lambda x, P, u, z, Q, R: (x + u, P + Q)) == 1.33, "right if nothing is seen"
+    assert bounds.earned(lambda v, w: (bounds(v, w)[0], 99)) == 1.5
+    calls = iter(range(10_000))
+    assert nis.earned(lambda *case: nis(*case) + next(calls) % 2) == 1.0
+    known = "innovation**2 / np.diag(S)"
+    assert nis.earned(lambda innovation, S: eval(known).sum()) == 0.0
+
+
+def test_a_graded_page_shows_the_points_as_the_output_of_its_cell(nis, monkeypatch, capsys):
+    shown = []
+    monkeypatch.setattr("sys.displayhook", shown.append)
+    nis.check(lambda v, S: v @ v)
+    assert shown == []
+    monkeypatch.setenv("NBGRADER_EXECUTION", "autograde")
+    nis.check(lambda v, S: v @ v)
+    nis.check(lambda *case: nis(*case))
+    assert shown == [0.0, nis.points]
+
+
+# What is kept
+
+
+def test_what_is_solved_is_kept_in_the_students_copy_and_nowhere_else(
+    tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setattr(solved, "_session", set())
+    below = tmp_path / "notebooks"
+    below.mkdir()
+    monkeypatch.chdir(below)
+    exercises.nis.check(lambda *case: exercises.nis(*case))
+    assert list(tmp_path.rglob("*.json")) == []
+    (tmp_path / ".arkaq-course.json").write_text("{}")
+    exercises.combine.check(lambda *case: exercises.combine(*case))
+    solved._session.clear()
+    exercises.turn.check(lambda *case: exercises.turn(*case))
+    capsys.readouterr()
+    exercises.progress("kalman")
+    assert capsys.readouterr().out == "kalman: 3 of 3 exercises solved, that is all of them\n"
+    solved._session.clear()
+    (tmp_path / "progress.json").write_text("scribble")
+    exercises.progress()
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == len(exercises.CHAPTERS) and all(": 0 of " in line for line in lines)
+    exercises.match.check(lambda *case: exercises.match(*case))
+    assert json.loads((tmp_path / "progress.json").read_text()) == {"solved": ["match"]}
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -187,5 +325,4 @@ def test_the_right_answers_are_those_of_the_methods(seed):
 )
 @pytest.mark.parametrize("name", ["turn", "scale", "finite_sum", "correct"])
 def test_an_odd_answer_is_met_with_plain_words(name, answer, says):
-    with pytest.raises(ExerciseError, match=says):
-        getattr(exercises, name).check(answer, rng=0)
+    assert re.search(says, getattr(exercises, name).problem(answer, rng=0))

@@ -1,13 +1,13 @@
 """The checks of the goal problem's exercises: right passes, wrong is told in what way."""
 
 import math
+import re
 
 import numpy as np
 import pytest
 
 from arkaq_edu import exercises
 from arkaq_edu.art import EuclideanART
-from arkaq_edu.exercises import ExerciseError
 
 
 def kicks_needed(p, q, sigmas):
@@ -82,11 +82,6 @@ WRONG = [
     ),
     (exercises.kicks_needed, lambda p, q, z: z**2 / (p - q) ** 2, "a number of kicks is whole"),
     (exercises.kicks_needed, lambda p, q, z: kicks_needed(p, q, 2 * z), "0 of 12 tries"),
-    (
-        exercises.kicks_needed,
-        lambda p, q, z: [kicks_needed(p, q, z)],
-        "not an array with one",
-    ),
     (exercises.kicks_needed, not_written, "still empty"),
     (exercises.worth, lambda *case: worth(*case)[::-1], "the turn second"),
     (exercises.worth, kicking(lambda p, g, c: 100 * p + c), "not worth 0: it is punished by -100$"),
@@ -122,8 +117,7 @@ WRONG = [
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize(("exercise", "answer", "words"), WRONG)
 def test_a_wrong_answer_is_told_in_what_way(exercise, answer, words, seed):
-    with pytest.raises(ExerciseError, match=words):
-        exercise.check(answer, rng=seed)
+    assert re.search(words, exercise.problem(answer, rng=seed))
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -1,10 +1,11 @@
 """The checks of the exercises of chapter 1: right answers pass, wrong ones are told in what way."""
 
+import re
+
 import numpy as np
 import pytest
 
 from arkaq_edu import exercises
-from arkaq_edu.exercises import ExerciseError
 
 
 def finite_sum(rewards, h):
@@ -105,7 +106,7 @@ WRONG = [
     (exercises.finite_sum, lambda r, h: np.mean(r[:h]), "mean"),
     (exercises.finite_sum, lambda r, h: r[h - 1], "only the last reward"),
     (exercises.finite_sum, lambda r, h: sums(r[:h]), "sums up to each step"),
-    (exercises.finite_sum, lambda r, h: finite_sum(r, h) + 1, "0 of 20 tries.*too large"),
+    (exercises.finite_sum, lambda r, h: finite_sum(r, h) + 1, "(?s)0 of 20 tries.*too large"),
     (exercises.finite_sum, lambda r, h: finite_sum(r, h) - 1, "too small"),
     (exercises.finite_sum, lambda r, h: [1.0, 2.0], r"one number, not 2 numbers"),
     (exercises.finite_sum, lambda r, h: "much", "numbers"),
@@ -188,8 +189,7 @@ WRONG = [
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize(("exercise", "answer", "hint"), WRONG)
 def test_a_wrong_answer_is_told_what_is_wrong(exercise, answer, hint, seed):
-    with pytest.raises(ExerciseError, match=hint):
-        exercise.check(answer, rng=seed)
+    assert re.search(hint, exercise.problem(answer, rng=seed))
 
 
 def test_a_right_choice_is_hardly_ever_called_wrong():

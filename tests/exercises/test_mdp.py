@@ -1,10 +1,11 @@
 """The checks of the exercises on decision processes: right answers pass, wrong ones are told."""
 
+import re
+
 import numpy as np
 import pytest
 
 from arkaq_edu import exercises
-from arkaq_edu.exercises import ExerciseError
 
 
 def q(T, R, gamma, V):
@@ -97,7 +98,7 @@ WRONG = [
     (
         exercises.bellman,
         lambda *case: bellman(*case) + 1,
-        "right in 0 of 20 tries; one of yours, .* l",
+        "(?s)right in 0 of 20 tries.*yours: .*too l",
     ),
     (exercises.bellman, lambda *case: bellman(*case) - 1, "too small"),
     (exercises.bellman, lambda T, R, V: 0, "stopped with TypeError"),
@@ -137,8 +138,7 @@ WRONG = [
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize(("exercise", "answer", "hint"), WRONG)
 def test_a_wrong_answer_is_told_what_is_wrong(exercise, answer, hint, seed):
-    with pytest.raises(ExerciseError, match=hint):
-        exercise.check(answer, rng=seed)
+    assert re.search(hint, exercise.problem(answer, rng=seed))
 
 
 @pytest.mark.parametrize(
@@ -161,8 +161,7 @@ def test_a_wrong_answer_is_told_what_is_wrong(exercise, answer, hint, seed):
     ],
 )
 def test_a_wrong_rate_is_told_what_is_wrong(rate, hint):
-    with pytest.raises(ExerciseError, match=hint):
-        exercises.rate.check(rate)
+    assert re.search(hint, exercises.rate.problem(rate))
 
 
 def test_what_the_check_computes_is_what_twenty_learners_do():

@@ -1,10 +1,11 @@
 """The checks of the exercises on value functions: right answers pass, wrong ones are told how."""
 
+import re
+
 import numpy as np
 import pytest
 
 from arkaq_edu import exercises
-from arkaq_edu.exercises import ExerciseError
 from arkaq_edu.pomdp import POMDP, PolicyTree, ValueFunction, tree_value
 
 
@@ -175,5 +176,4 @@ def two_steps_free(T_a, O_a, R, gamma, a, after):
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize(("exercise", "answer", "hint"), WRONG)
 def test_a_wrong_answer_is_told_what_is_wrong(exercise, answer, hint, seed):
-    with pytest.raises(ExerciseError, match=hint):
-        exercise.check(answer, rng=seed)
+    assert re.search(hint, exercise.problem(answer, rng=seed))

@@ -1,0 +1,66 @@
+"""The chapters as slides for a lecture, from the same notebooks: `arkaq slides`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from arkaq_edu._files import replacing
+from arkaq_edu._paths import course_folder, in_repository
+from arkaq_edu._student import blank
+
+#: Where `make slides` puts what the pages load; without it they load the same from the web.
+LIBRARIES = {
+    "reveal_url_prefix": "node_modules/reveal.js",
+    "mathjax_url": "node_modules/mathjax/MathJax.js?config=TeX-AMS_CHTML-full,Safe",
+    "require_js_url": "node_modules/requirejs/require.js",
+}
+
+
+def slides(out: Path | str) -> list[Path]:
+    """Write each chapter as a page of slides, and return the pages.
+
+    A heading begins a slide, a paragraph the next one below it, and what a cell shows comes at a
+    key press of its own: so a class predicts first. Answers to exercises are blank.
+
+    Parameters
+    ----------
+    out : path
+        The folder for the pages.
+
+    Raises
+    ------
+    ValueError
+        If the package does not run from a clone: the pages of a wheel have no outputs to show.
+    """
+    if not in_repository():
+        raise ValueError("slides are made in a clone of the repository: a wheel has no outputs")
+    import nbformat
+    from nbconvert import SlidesExporter
+
+    out, pages = Path(out), []
+    local = LIBRARIES if (out / "node_modules").is_dir() else {}
+    exporter = SlidesExporter(reveal_scroll=True, reveal_theme="simple", **local)
+    for master in sorted((course_folder() / "notebooks").glob("*.ipynb")):
+        notebook = nbformat.read(master, as_version=4)
+        for cell in notebook.cells:
+            _place(cell)
+        page = out / f"{master.stem}.slides.html"
+        with replacing(page) as fresh:
+            fresh.write_text(exporter.from_notebook_node(notebook)[0], "utf-8")
+        pages.append(page)
+    return pages
+
+
+def _place(cell: Any) -> None:
+    """Say on which slide a cell is."""
+    marks = cell.metadata.get("nbgrader", {})
+    if cell.cell_type == "markdown":
+        kind = "slide" if cell.source.startswith(("# ", "## ")) else "subslide"
+    elif marks.get("grade") or cell.source.startswith("exercises.progress("):
+        kind = "skip"
+    else:
+        kind = "fragment" if cell.outputs else "-"
+    if marks.get("solution"):
+        cell.source = blank(cell.source)
+    cell.metadata["slideshow"] = {"slide_type": kind}
