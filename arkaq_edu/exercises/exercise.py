@@ -257,9 +257,8 @@ class Exercise:
             and run, to its end.
         """
         graded = "NBGRADER_EXECUTION" in os.environ
-        steps = self._steps(function, 0 if graded and rng is None else rng)
-        if graded:
-            steps = list(steps)
+        steps: Iterable[Verdict] = self._steps(function, 0 if graded and rng is None else rng)
+        steps = list(steps) if graded else steps
         wrong = next((step for step in steps if step.problem), None)
         if wrong:
             self._failed += not wrong.empty
