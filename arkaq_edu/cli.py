@@ -285,9 +285,9 @@ def _workers(cluster: str | None, jobs: int, folder: Path) -> Iterator[Any]:
 @main.command()
 @click.argument("out", type=click.Path(file_okay=False, path_type=Path))
 def release(out: Path) -> None:
-    """Write the course as a teacher hands it out, into a new folder OUT.
+    """Write what a teacher hands out to the folder OUT.
 
-    OUT/student is the course without solutions, OUT/teacher.zip has the solutions and the answers
+    OUT must be new or empty. OUT/student is the course without solutions, OUT/teacher.zip has the solutions and the answers
     to the predictions, and OUT/nbgrader is a course folder for nbgrader. See TEACHING.md.
     """
     from arkaq_edu.release import release
@@ -299,7 +299,10 @@ def release(out: Path) -> None:
 @main.command()
 @click.argument("out", default="slides", type=click.Path(file_okay=False, path_type=Path))
 def slides(out: Path) -> None:
-    """Write each chapter as slides for a lecture, into the folder OUT (default: slides)."""
+    """Write each chapter as slides for a lecture.
+
+    OUT is the folder for the pages (default: slides).
+    """
     from arkaq_edu.slides import slides
 
     for page in slides(out):
