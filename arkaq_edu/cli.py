@@ -274,9 +274,7 @@ def _workers(cluster: str | None, jobs: int, folder: Path) -> Iterator[Any]:
     except ImportError:
         raise click.UsageError("--cluster needs Dask: pip install 'arkaq-edu[cluster]'") from None
     with Client(cluster) as client:
-        client.get_versions(
-            check=True, packages=["arkaq_edu"]
-        )
+        client.get_versions(check=True, packages=["arkaq_edu"])
         for module in sorted(folder.glob("*.py")):
             client.upload_file(str(module), load=False)
         yield client.get_executor(pure=False)
