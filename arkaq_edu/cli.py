@@ -285,8 +285,9 @@ def _workers(cluster: str | None, jobs: int, folder: Path) -> Iterator[Any]:
 def release(out: Path) -> None:
     """Write what a teacher hands out to the folder OUT.
 
-    OUT must be new or empty. OUT/student is the course without solutions, OUT/teacher.zip has the solutions and the answers
-    to the predictions, and OUT/nbgrader is a course folder for nbgrader. See TEACHING.md.
+    OUT must be new or empty. OUT/student is the course without solutions, OUT/teacher.zip has the
+    solutions and the answers to the predictions, and OUT/nbgrader is a course folder for nbgrader.
+    See TEACHING.md.
     """
     from arkaq_edu.release import release
 
