@@ -8,7 +8,7 @@
 - `kicks`: kicks of a real robot, and simulated ones;
 - `policies`: policies that play either problem;
 - `studies`: `study`, every combination of some settings over many seeds, and `read_study`;
-  `trials`: one cell of it;
+  `trials`: one cell of it; `parts`: other segmenters and learners to compare;
 - `runs`: many runs at once, and their summary;
 - `reproduce`: the numbers of the thesis beside those measured here, over many seeds.
 """
@@ -21,6 +21,7 @@ __getattr__, __dir__, __all__ = _lazy.attach(
         "approach",
         "goal",
         "kicks",
+        "parts",
         "policies",
         "reproduce",
         "runs",

@@ -82,8 +82,8 @@ def study(
           ``goal_distance``;
         - ``episodes``: the number of fresh starts that judge an agent, 500 by default.
 
-        A segmenter or a learner is an object, or the name of a class: EuclideanART, ART2A, ART2,
-        UniformGrid; QLearning, Sarsa, ExpectedSarsa. One of your own is "module:name". With
+        A segmenter or a learner is an object, or the name of a class of `arkaq_edu.art`,
+        `arkaq_edu.arkaq` or `arkaq_edu.experiments.parts`. One of your own is "module:name". With
         parameters it is a dictionary such as ``{"name": "UniformGrid", "cells": [20, 17]}``.
         ``vigilance`` and ``learning_rate`` are those of the cell, if they are not given.
     seeds : int or iterable of int
@@ -98,7 +98,7 @@ def study(
         is not run again.
     jobs : int or concurrent.futures.Executor
         Number of processes; -1 for one a core. Or what runs the cells, for example a Dask cluster:
-        ``dask.distributed.Client(address).get_executor()``.
+        ``dask.distributed.Client(address).get_executor(pure=False)``.
     retries : int
         How many times a cell is tried again that failed, or whose process was killed.
     progress : bool

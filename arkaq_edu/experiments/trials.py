@@ -22,13 +22,37 @@ from arkaq_edu.arkaq import (
 )
 from arkaq_edu.art import ART2, ART2A, EuclideanART
 from arkaq_edu.experiments import approach, goal
+from arkaq_edu.experiments.parts import (
+    AsPrinted,
+    AtRandom,
+    AveragedQ,
+    ComplementCoding,
+    EpsilonGreedy,
+    TileCoding,
+    uncontrolled,
+    unfiltered,
+)
 from arkaq_edu.experiments.runs import FRESH_SEEDS
 from arkaq_edu.field import Camera, Head, Kick, Legs
 from arkaq_edu.mdp import speed_of_convergence
 
-#: The segmenters and the learners that a study knows by name.
-SEGMENTERS: dict[str, Any] = {cls.__name__: cls for cls in (EuclideanART, ART2A, ART2, UniformGrid)}
-LEARNERS: dict[str, Any] = {cls.__name__: cls for cls in (QLearning, Sarsa, ExpectedSarsa)}
+#: The segmenters, the learners and the senses that a study knows by name.
+SEGMENTERS: dict[str, Any] = {
+    cls.__name__: cls for cls in (EuclideanART, ART2A, ART2, ComplementCoding, UniformGrid)
+}
+LEARNERS: dict[str, Any] = {
+    cls.__name__: cls
+    for cls in (
+        QLearning, Sarsa, ExpectedSarsa, AsPrinted, AtRandom, AveragedQ, EpsilonGreedy, TileCoding,
+    )
+}  # fmt: skip
+SENSES: dict[str, Any] = {
+    "consistent": Sensing.consistent,
+    "goal": Sensing.goal,
+    "thesis": Sensing.thesis,
+    "uncontrolled": uncontrolled,
+    "unfiltered": unfiltered,
+}
 PROBLEMS: dict[str, Any] = {"approach": approach, "goal": goal}
 
 _BODY = {"camera": Camera, "head": Head, "kick": Kick, "legs": Legs}
@@ -49,8 +73,8 @@ def part(role: str, given: Any, known: Mapping[str, Any] | None = None, **usual:
     role : str
         What the part is, for the message.
     given : str, mapping or object
-        A name among the `known`, or "module:name" for a part of one's own. A mapping has
-        such a ``name``, and the parameters. Anything else is the part itself.
+        A name among the `known`, or "module:name" for a part of one's own. A mapping has such a
+        ``name``, and the parameters, which may be parts themselves. Anything else is the part.
     known : mapping of str to class
     **usual
         Parameters for a class that knows them, where none are given.
@@ -68,7 +92,10 @@ def part(role: str, given: Any, known: Mapping[str, Any] | None = None, **usual:
     Counter()
     """
     known = known or {}
-    parameters = dict(given) if isinstance(given, Mapping) else {}
+    parameters = {
+        key: part(key, value, known, **usual) if isinstance(value, Mapping) else value
+        for key, value in (given.items() if isinstance(given, Mapping) else ())
+    }
     name = parameters.pop("name", None) if isinstance(given, Mapping) else given
     if not isinstance(name, str):
         if isinstance(given, Mapping):
@@ -92,9 +119,9 @@ def imported(role: str, name: str, known: Mapping[str, Any] | None = None) -> An
     --------
     >>> imported("task", "math:pi")
     3.141592653589793
-    >>> imported("learner", "Sarsa2", LEARNERS)
+    >>> imported("task", "golf", PROBLEMS)
     Traceback (most recent call last):
-    ValueError: learner must be QLearning, Sarsa, ExpectedSarsa or "module:name", got 'Sarsa2'
+    ValueError: task must be approach, goal or "module:name", got 'golf'
     """
     module, _, attribute = name.partition(":")
     try:
@@ -139,7 +166,7 @@ def arrange(problem: str, setting: Mapping[str, Any]) -> Arranged:
     learning = {name: rest.pop(name) for name in [*rest] if name in _LEARNING}
     senses = {name: rest.pop(name) for name in [*rest] if name in _SENSING}
     parts = {name: rest.pop(name, None) for name in ("vigilance", "segmenter", "learner")}
-    sensing = rest.pop("sensing", None)
+    sensing = part("sensing", rest.pop("sensing", None), SENSES)
     task = {name: _bodily(name, value) for name, value in rest.items()}
     where = {k: v for k, v in task.items() if k == "goal_distance"}
     vigilance = parts["vigilance"]
