@@ -200,35 +200,62 @@ def watch(
     show_default=True,
     help="Folder for the page, the table and the agents.",
 )
-@click.option("--seeds", type=click.IntRange(1), default=20, show_default=True)
+@click.option("--seeds", type=click.IntRange(1), help="Number of seeds.  [default: 30]")
 @click.option(
     "--approaches",
     type=click.IntRange(1),
-    default=500,
-    show_default=True,
-    help="Approaches, and kicks, that judge each policy.",
+    help="Approaches, and kicks, that judge each policy.  [default: 500]",
 )
 @click.option("--jobs", type=int, default=-1, show_default=True, help="Processes; -1: all cores.")
-def reproduce(out: Path, seeds: int, approaches: int, jobs: int) -> None:
-    """Repeat the experiments of the thesis, over many seeds.
+@click.option("--quick", is_flag=True, help="A rehearsal in a minute: one seed, little training.")
+def reproduce(out: Path, seeds: int | None, approaches: int | None, jobs: int, quick: bool) -> None:
+    """Repeat the experiments of the thesis, and judge every number and claim.
 
-    Writes index.html, which opens offline, and results.csv. One seed takes about two minutes on
-    one core. The trained agents are saved, so an interrupted run continues when you call it again.
+    Writes index.html, which opens offline; results.csv, a row for every number and claim with a
+    verdict; runs.csv, every value of every seed; curves.csv, goals against kicks; and run.json,
+    with versions, settings and times. Agents and measurements are kept as they are done: after an
+    interruption, call it again to continue.
     """
-    import matplotlib
-
-    matplotlib.use("agg")
     from arkaq_edu.arkaq import Arkaq
-    from arkaq_edu.experiments import agent_file, results
+    from arkaq_edu.experiments import agent_file, judge, measure
+    from arkaq_edu.experiments.reproduce import QUICK, write
+    from arkaq_edu.experiments.runs import Plan
     from arkaq_edu.figures.gallery import FIGURES
     from arkaq_edu.figures.report import write_report
 
-    table = results(seeds, approaches, folder=out, jobs=jobs)
-    click.echo("drawing the figures")
+    seeds, approaches = seeds or (1 if quick else 30), approaches or (20 if quick else 500)
+    plan = Plan(out, approaches, *(QUICK if quick else ()))
+    measured = measure(seeds, plan, jobs)
+    write(out, measured, {"seeds": seeds, **plan.settings()})
     # The stream of the first seed is the one recorded for the course; its agents are in `out`.
-    agent = Arkaq.load(agent_file(out, "approach", "consistent", 0))
-    goal_agent = Arkaq.load(agent_file(out, "goal", "near", 0))
-    click.echo(write_report(out, table, FIGURES, agent=agent, goal_agent=goal_agent))
+    page = write_report(
+        out,
+        judge(measured.runs),
+        FIGURES,
+        note="A rehearsal with little training: its verdicts mean nothing." if quick else "",
+        jobs=jobs,
+        progress=True,
+        agent=Arkaq.load(agent_file(out, "approach", "consistent", 0)),
+        goal_agent=Arkaq.load(agent_file(out, "goal", "near", 0)),
+        study=measured.curves,
+    )
+    click.echo(page)
+
+
+@main.command()
+@click.argument("place", nargs=-1, required=True)
+@click.option("--all", "everything", is_flag=True, help="Name every function, test and notebook.")
+def trace(place: tuple[str, ...], everything: bool) -> None:
+    """Find the code, the tests and the notebook of a PLACE in the thesis.
+
+    PLACE is the number of an equation, a figure or a section, such as 2.47, 5.16 or 4.2.2. Where
+    two have the same number, say which: figure 2.1. A row of the errata is errata row 12.
+    """
+    from arkaq_edu.trace import in_words
+    from arkaq_edu.trace import trace as find
+
+    found = find(" ".join(place))
+    click.echo(in_words(found, len(found) + 1000) if everything else in_words(found))
 
 
 @main.command()

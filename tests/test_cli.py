@@ -6,6 +6,7 @@ from click.testing import CliRunner
 
 from arkaq_edu import cli
 from arkaq_edu.arkaq import Arkaq, TrainingSettings
+from arkaq_edu.figures.report import anchor
 
 
 @pytest.fixture
@@ -102,13 +103,18 @@ def test_bad_input_gets_one_line_and_status_two(run, words, hint):
     assert hint in answer.output
 
 
-def test_reproduce_writes_a_page_that_opens_offline_and_a_table(run, brief, tmp_path):
+def test_reproduce_writes_a_page_that_opens_offline_and_its_tables(run, brief, tmp_path):
     answer = run("reproduce", "--seeds", 1, "--approaches", 2, "--jobs", 1, "--out", "report")
     assert answer.exit_code == 0, answer.output
-    table = pd.read_csv(tmp_path / "report" / "results.csv")
-    assert table.columns.tolist() == ["quantity", "thesis", "mean", "low", "high", "seeds"]
-    assert table.thesis.dropna().tolist() == [137, 333, 519, 825, 1933, 9, 13, 18, 60, 35]
+    names = ["curves.csv", "index.html", "results.csv", "run.json", "runs.csv"]
+    assert sorted(p.name for p in (tmp_path / "report").iterdir() if p.is_file()) == names
+    table = pd.read_csv(tmp_path / "report" / "results.csv").set_index("quantity")
+    printed = [table.thesis[f"centers, vigilance {rho}"] for rho in (0.15, 0.1, 0.075, 0.05, 0.025)]
+    assert printed == ["137", "333", "519", "825", "1933"]
     page = (tmp_path / "report" / "index.html").read_text()
     assert "://" not in page
     for number in [*range(5, 9), *range(10, 31), *range(34, 42)]:
         assert f'id="figure-5.{number}"' in page
+    for quantity in table.index:
+        assert f'id="{anchor(quantity)}"' in page
+    assert len({anchor(quantity) for quantity in table.index}) == len(table)

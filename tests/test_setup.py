@@ -41,7 +41,7 @@ FLOORS = [
     "envs",
     "experiments",
     "figures",
-    "widgets exercises",
+    "widgets exercises trace",
     "site release slides",
     "cli",
 ]

@@ -267,7 +267,8 @@ class ART2(Categories):
 
     References
     ----------
-    Thesis sections 2.4.2 and 2.4.3, equations 2.24-2.48, figures 2.20 and 2.21.
+    Thesis sections 2.4.2, 2.4.3 and 2.4.3.1 to 2.4.3.4, equations 2.24-2.48, figures 2.20 and
+    2.21.
     G. A. Carpenter, S. Grossberg, ART 2: self-organization of stable category recognition codes
     for analog input patterns, Applied Optics 26 (1987) 4919-4930.
 

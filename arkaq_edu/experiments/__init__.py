@@ -10,7 +10,8 @@
 - `studies`: `study`, every combination of some settings over many seeds, and `read_study`;
   `trials`: one cell of it; `parts`: other segmenters and learners to compare;
 - `runs`: many runs at once, and their summary;
-- `reproduce`: the numbers of the thesis beside those measured here, over many seeds.
+- `claims`: every number and every claim of the thesis, and what judges it;
+- `reproduce`: both problems over many seeds, with a verdict on every claim.
 """
 
 import lazy_loader as _lazy
@@ -19,6 +20,7 @@ __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
     submodules=[
         "approach",
+        "claims",
         "goal",
         "kicks",
         "parts",
@@ -32,8 +34,9 @@ __getattr__, __dir__, __all__ = _lazy.attach(
     ],
     submod_attrs={
         "kicks": ["load_kicks", "record_kicks"],
-        "reproduce": ["goal_table", "results"],
-        "runs": ["agent_file", "learning_curve", "summary", "thesis_numbers"],
+        "claims": ["judge", "thesis_numbers"],
+        "reproduce": ["measure", "results"],
+        "runs": ["agent_file", "learning_curve"],
         "studies": ["read_plan", "read_study", "study"],
         "streams": ["count_centers", "mean_nis"],
     },

@@ -1,9 +1,12 @@
-"""Many runs at once, and their summary: what the studies of both problems share."""
+"""Many runs at once, each kept when it is done: what the studies of both problems share."""
 
 from __future__ import annotations
 
+import json
 import os
+import time
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,16 +16,100 @@ from joblib import Parallel
 from numpy.typing import ArrayLike, NDArray
 from tqdm.auto import tqdm
 
-from arkaq_edu import _checks
-from arkaq_edu._paths import data_file
-from arkaq_edu.arkaq import Arkaq
+from arkaq_edu import __version__, _checks
+from arkaq_edu._files import replacing
+from arkaq_edu.arkaq import Arkaq, TrainingSettings
+from arkaq_edu.experiments.claims import rounded_value, thesis_numbers
 from arkaq_edu.experiments.policies import Policy
 
 #: Seeds of fresh starts begin here, far above the seeds that agents are trained with.
 FRESH_SEEDS = 10_000
 
-#: What a run returns: its seed, and a value for each quantity it measured.
-Measured = tuple[int, dict[str, float]]
+#: What a run returns: its seed, and a value for each quantity it measured. A curve is a list.
+Measured = tuple[int, dict[str, Any]]
+
+Folder = str | os.PathLike[str] | None
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How every seed of a study is run.
+
+    Parameters
+    ----------
+    folder : path, optional
+        Where agents and results are kept, so that an interrupted study continues.
+    episodes : int
+        Fresh episodes that judge each policy.
+    learning, goal_learning : TrainingSettings, optional
+        How agents are trained for `approach` and for `goal`.
+    """
+
+    folder: Folder = None
+    episodes: int = 500
+    learning: TrainingSettings | None = None
+    goal_learning: TrainingSettings | None = None
+
+    def __post_init__(self) -> None:
+        _checks.integer("episodes", self.episodes, 1)
+
+    def settings(self) -> dict[str, Any]:
+        """Return what the results depend on, as plain numbers."""
+        chosen = {"learning": self.learning, "goal_learning": self.goal_learning}
+        return {"version": __version__, "episodes": self.episodes} | {
+            name: None if value is None else value.to_json() for name, value in chosen.items()
+        }
+
+
+def kept(
+    measure: Callable[..., dict[str, Any]],
+    name: str,
+    seed: int,
+    plan: Plan,
+    *more: Any,
+) -> Measured:
+    """Return what a run measures, from the plan's folder if the run has been done already.
+
+    Parameters
+    ----------
+    measure : function
+        Takes the seed, the plan and `more`, and returns a value for each quantity.
+    name : str
+        The name of the run, for its file.
+    seed : int
+        The seed of the run.
+    plan : Plan
+        A file that was written with other settings is not used.
+    *more
+        Passed to `measure`.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     plan = Plan(folder=folder)
+    ...     first = kept(lambda seed, plan: {"x": 0.1 + 0.2}, "sum", 7, plan)
+    ...     again = kept(lambda seed, plan: {"x": 1 / 0}, "sum", 7, plan)
+    >>> first, again == first
+    ((7, {'x': 0.3}), True)
+    """
+    file = f"{name}-seed{seed:02d}.json"
+    path = None if plan.folder is None else Path(plan.folder) / "runs" / file
+    if path is not None and path.exists():
+        done = json.loads(path.read_text(encoding="utf-8"))
+        if done["settings"] == plan.settings():
+            return seed, done["values"]
+    start = time.process_time()
+    values = {
+        quantity: value if isinstance(value, list) else rounded_value(value)
+        for quantity, value in measure(seed, plan, *more).items()
+    }
+    if path is not None:
+        seconds = round(time.process_time() - start, 1)
+        text = json.dumps({"settings": plan.settings(), "seconds": seconds, "values": values})
+        with replacing(path) as fresh:
+            fresh.write_text(text + "\n", encoding="utf-8")
+    return seed, values
 
 
 def run_all(tasks: list[Any], jobs: int, progress: bool, label: str) -> list[Any]:
@@ -43,54 +130,20 @@ def run_all(tasks: list[Any], jobs: int, progress: bool, label: str) -> list[Any
 def tidy(measured: Iterable[Measured]) -> pd.DataFrame:
     """Return one row a measurement, with columns quantity, seed, value.
 
+    Curves are left out, and what could not be measured (NaN: the way of walks that never arrived).
+
     Examples
     --------
     >>> tidy([(0, {"x": 1.0, "y": 2.0})]).values.tolist()
     [['x', 0, 1.0], ['y', 0, 2.0]]
     """
-    rows = [(name, seed, value) for seed, values in measured for name, value in values.items()]
+    rows = [
+        (name, seed, value)
+        for seed, values in measured
+        for name, value in values.items()
+        if not isinstance(value, list) and value == value
+    ]
     return pd.DataFrame(rows, columns=["quantity", "seed", "value"])
-
-
-def summary(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return mean and range over the seeds, beside the number that the thesis prints.
-
-    Parameters
-    ----------
-    rows : DataFrame
-        Columns quantity, seed, value.
-
-    Returns
-    -------
-    DataFrame
-        Columns quantity, thesis (NaN where it prints none), mean, low and high (the lowest and
-        the highest of the seeds), seeds (how many). First come the quantities of the thesis, in
-        its order.
-
-    Examples
-    --------
-    >>> rows = tidy([(0, {"centers, vigilance 0.15": 150}), (1, {"centers, vigilance 0.15": 152})])
-    >>> summary(rows)[["quantity", "thesis", "mean", "seeds"]].values.tolist()
-    [['centers, vigilance 0.15', 137, 151.0, 2]]
-    """
-    values = rows.sort_values(["quantity", "seed"]).groupby("quantity").value
-    table = values.agg(mean="mean", low="min", high="max", seeds="count")
-    printed = thesis_numbers()
-    table.insert(0, "thesis", printed.reindex(table.index))
-    order = [*printed.index, *table.index.difference(printed.index)]
-    table = table.reindex([quantity for quantity in order if quantity in table.index])
-    return table.rename_axis("quantity").reset_index()
-
-
-def thesis_numbers() -> pd.Series:
-    """Return the numbers that the thesis prints of its two problems, by quantity.
-
-    Examples
-    --------
-    >>> int(thesis_numbers()["centers, vigilance 0.1"])
-    333
-    """
-    return pd.read_csv(data_file("thesis.csv"), index_col="quantity").thesis
 
 
 def policy_fact(agent: Arkaq, actions: ArrayLike, names: tuple[str, ...], quantity: str) -> str:
@@ -127,8 +180,9 @@ def agent_file(folder: str | os.PathLike[str], task: str, kind: str, seed: int) 
     folder : path
         The folder of the study.
     task : {"approach", "goal"}
-    kind : {"consistent", "thesis", "near", "far"}
-        The Kalman filter of an approach, or the distance of a goal.
+    kind : str
+        The Kalman filter of an approach, "consistent" or "thesis", and the vigilance if it is not
+        the usual one; or the distance of a goal, "near" or "far".
     seed : int
         The agent's seed.
 
@@ -140,9 +194,7 @@ def agent_file(folder: str | os.PathLike[str], task: str, kind: str, seed: int) 
     return Path(folder) / "agents" / f"{task}-{kind}-seed{seed:02d}.npz"
 
 
-def checkpoint(
-    folder: str | os.PathLike[str] | None, task: str, kind: str, seed: int
-) -> Path | None:
+def checkpoint(folder: Folder, task: str, kind: str, seed: int) -> Path | None:
     """Return `agent_file` and make its folder; None if there is no folder to keep agents in."""
     if folder is None:
         return None

@@ -17,7 +17,7 @@ from arkaq_edu.arkaq import Sensing, TrainingSettings
 from arkaq_edu.art import ART2A, EuclideanART, coverage, quantization_error
 from arkaq_edu.art.geometry import six_colors, voronoi_cells
 from arkaq_edu.experiments import approach
-from arkaq_edu.experiments.runs import thesis_numbers
+from arkaq_edu.experiments.claims import thesis_numbers
 from arkaq_edu.experiments.streams import VIGILANCES
 
 #: The numbers of centers that the thesis prints, by vigilance (figures 5.10 to 5.14).

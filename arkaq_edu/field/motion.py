@@ -1,4 +1,4 @@
-"""The motion engine: every gait is made of footsteps.
+"""The motion engine (thesis 5.1.2.2): every gait is made of footsteps.
 
 A robot on the ground does nothing but choose two numbers each cycle: the lengths of the left and
 the right footstep. These functions compute them. A distance too long for one cycle takes several

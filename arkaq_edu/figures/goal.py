@@ -213,14 +213,14 @@ def plot_scores(
     return Plot(ax, means=means, bands=bands, best=best, thesis=thesis)
 
 
-def figure_5_40(ax: Axes | None = None, **options: Any) -> Plot:
+def figure_5_40(ax: Axes | None = None, *, study: pd.DataFrame | None = None) -> Plot:
     """Draw figure 5.40, goals against kicks from near; see `plot_scores`."""
-    return plot_scores("near", ax, **options)
+    return plot_scores("near", ax, study=study)
 
 
-def figure_5_41(ax: Axes | None = None, **options: Any) -> Plot:
+def figure_5_41(ax: Axes | None = None, *, study: pd.DataFrame | None = None) -> Plot:
     """Draw figure 5.41, goals against kicks from far, not straight; see `plot_scores`."""
-    return plot_scores("far", ax, **options)
+    return plot_scores("far", ax, study=study)
 
 
 def _line_axes(ax: Axes | None, title: str) -> Axes:

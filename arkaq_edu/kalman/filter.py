@@ -1,4 +1,4 @@
-"""The Kalman filter: the equations of thesis section 2.5 and the class that runs them."""
+"""The Kalman filter: the equations of thesis 2.5.1 and 2.5.2, and the class that runs them."""
 
 from __future__ import annotations
 

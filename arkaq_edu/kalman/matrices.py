@@ -1,4 +1,4 @@
-"""Small matrices in compiled code: products, symmetry and the inverse that the filter needs.
+"""Small matrices in compiled code: products, symmetry and the inverse (thesis 4.1).
 
 Each function returns a new array. Sums run in a fixed order, so the same input gives the same bits
 on every machine, which a linear algebra library does not promise.

@@ -117,7 +117,7 @@ def grid_world(plan: Sequence[str] = FLOOR, slip: float = 0.1, gamma: float = 0.
 
     References
     ----------
-    Thesis 2.2. The floor is the course's own.
+    Thesis 2.1.4 (goals and rewards) and 2.2. The floor is the course's own.
 
     Examples
     --------

@@ -16,7 +16,6 @@ from arkaq_edu.experiments import (
     learning_curve,
     mean_nis,
     results,
-    summary,
     thesis_numbers,
 )
 from arkaq_edu.experiments.approach import calibrate, evaluate, planner, record_sightings, train
@@ -110,31 +109,6 @@ def test_a_trajectory_leads_to_the_ball(agent):
     assert ((steps > 80) & (steps < 120)).all()
     again = approach.record_episode(agent, 2500.0, -0.3, seed=4)
     pd.testing.assert_frame_equal(table, again.table)
-
-
-def test_a_result_is_the_mean_and_the_range_of_its_seeds():
-    rng = np.random.default_rng(0)
-    values = rng.normal(size=20)
-    rows = pd.DataFrame({"quantity": "x", "seed": range(20), "value": values})
-    row = summary(rows).iloc[0]
-    assert row["mean"] == pytest.approx(values.mean())
-    assert (row.low, row.high) == (min(values), max(values))
-    assert row.seeds == 20
-    assert np.isnan(row.thesis)
-
-
-def test_results_do_not_depend_on_the_number_of_processes_and_are_taken_up(tmp_path):
-    brief_goal = TrainingSettings.goal(patterns=100, exploration=100, exploitation=0)
-    options = {"seeds": 2, "approaches": 3, "progress": False, "learning": BRIEF}
-    options["goal_learning"] = brief_goal
-    alone = results(jobs=1, folder=tmp_path, **options)
-    kept = sorted((tmp_path / "agents").iterdir())
-    assert len(kept) == 8
-    stamps = [file.read_bytes() for file in kept]
-    together = results(jobs=2, folder=tmp_path, **options)
-    pd.testing.assert_frame_equal(alone, together)
-    assert [file.read_bytes() for file in kept] == stamps
-    pd.testing.assert_frame_equal(alone, results(jobs=2, **options))
 
 
 def test_the_study_kept_with_the_course_is_over_twenty_seeds_and_shows_what_was_aimed_at():

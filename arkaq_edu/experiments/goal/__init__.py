@@ -23,7 +23,7 @@ __getattr__, __dir__, __all__ = _lazy.attach(
         "kicks": ["kick_trials", "load_kick_trials"],
         "planning": ["BestPolicy", "best_policy"],
         "studies": [
-            "BLOCK", "curve", "load_study", "mean_curves", "play", "rates",
+            "BLOCK", "curve", "curves", "load_study", "mean_curves", "play", "rates",
             "scored_while_learning", "seed_runs", "study",
         ],
     },

@@ -14,8 +14,8 @@ from arkaq_edu.arkaq import Sensing, TrainingSettings
 from arkaq_edu.art import EuclideanART
 from arkaq_edu.envs.score_goal import TURN_LEFT, TURN_RIGHT
 from arkaq_edu.experiments import streams
+from arkaq_edu.experiments.claims import thesis_numbers
 from arkaq_edu.experiments.goal.task import make_look_around
-from arkaq_edu.experiments.runs import thesis_numbers
 from arkaq_edu.experiments.streams import mean_nis as mean_nis
 
 #: The vigilances of figures 5.35 to 5.37.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import os
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -15,16 +15,18 @@ from arkaq_edu._paths import data_file
 from arkaq_edu.arkaq import Arkaq, TrainingSettings
 from arkaq_edu.experiments import goal
 from arkaq_edu.experiments.goal.task import Distance
-from arkaq_edu.experiments.runs import FRESH_SEEDS, Measured, checkpoint, run_all
+from arkaq_edu.experiments.policies import Policy
+from arkaq_edu.experiments.runs import FRESH_SEEDS, Measured, Plan, checkpoint, kept, run_all
 from arkaq_edu.experiments.streams import count_centers
 
-_Folder = str | os.PathLike[str] | None
 _DISTANCES: tuple[Distance, ...] = ("near", "far")
 
 #: Kicks shown in a curve: every seed of the study has at least as many while it learns.
 KICKS = {"near": 1400, "far": 1500}
 #: Kicks in one entry of a curve.
 BLOCK = 50
+#: Columns of a table of curves.
+COLUMNS = ["goal_distance", "seed", "who", "kicks", "goals"]
 #: Fresh kicks that judge a policy that no longer learns.
 FRESH = 300
 
@@ -105,21 +107,32 @@ def play(
     >>> play(0, "near", kicks=50, fresh=50, learning=brief).who.tolist()
     ['ARKAQ', 'ARKAQ, learned', 'random actions', 'oracle']
     """
-    agent = goal.train(seed, goal_distance=goal_distance, learning=learning, progress=False)
     kicks = KICKS[goal_distance] if kicks is None else kicks
+    agent = goal.train(seed, goal_distance=goal_distance, learning=learning, progress=False)
+    return _curves(seed, goal_distance, _scored(agent, seed, goal_distance, kicks, fresh))
 
-    def scored(policy, n):
-        return goal.evaluate(policy, n, FRESH_SEEDS + seed, goal_distance=goal_distance).is_success
 
-    curves = {
+def _scored(
+    agent: Arkaq, seed: int, distance: Distance, kicks: int, fresh: int
+) -> dict[str, NDArray[np.bool_]]:
+    """Return whether each kick scored: of the agent, learning and learned, and of the others."""
+
+    def scored(policy: Policy, n: int) -> NDArray[np.bool_]:
+        shots = goal.evaluate(policy, n, FRESH_SEEDS + seed, goal_distance=distance)
+        return shots.is_success.to_numpy()
+
+    return {
         "ARKAQ": scored_while_learning(agent)[:kicks],
         "ARKAQ, learned": scored(goal.greedy(agent), fresh),
         "random actions": scored(goal.at_random(seed), kicks),
         "oracle": scored(goal.planner(), fresh),
     }
-    table = pd.concat([curve(goals).assign(who=who) for who, goals in curves.items()])
-    table = table.assign(goal_distance=goal_distance, seed=seed).reset_index(drop=True)
-    return table[["goal_distance", "seed", "who", "kicks", "goals"]]
+
+
+def _curves(seed: int, distance: Distance, scored: Mapping[str, NDArray[np.bool_]]) -> pd.DataFrame:
+    table = pd.concat([curve(goals).assign(who=who) for who, goals in scored.items()])
+    table = table.assign(goal_distance=distance, seed=seed).reset_index(drop=True)
+    return table[COLUMNS]
 
 
 def study(seeds: int = 30, jobs: int = -1, progress: bool = True) -> pd.DataFrame:
@@ -213,38 +226,63 @@ def rates(table: pd.DataFrame, last: int = 200) -> pd.DataFrame:
     return share.unstack(["goal_distance", "who"])
 
 
-def seed_runs(
-    seed: int, kicks: int, folder: _Folder = None, learning: TrainingSettings | None = None
-) -> list[Any]:
+def seed_runs(seed: int, plan: Plan) -> list[Any]:
     """Return all runs of one seed as joblib's delayed tasks, each of which gives `Measured`."""
-    training = [delayed(_training)(seed, name, kicks, folder, learning) for name in _DISTANCES]
-    return [delayed(_stream)(seed, learning), *training]
+    return [
+        delayed(kept)(_stream, "goal-stream", seed, plan),
+        *(delayed(kept)(_training, f"goal-{name}", seed, plan, name) for name in _DISTANCES),
+    ]
 
 
-def _stream(seed: int, learning: TrainingSettings | None) -> Measured:
-    n = (learning or TrainingSettings.goal()).patterns
+def _stream(seed: int, plan: Plan) -> dict[str, float]:
+    n = (plan.goal_learning or TrainingSettings.goal()).patterns
     X = goal.patterns(goal.record_sightings(n, seed))
     counts = count_centers(X, goal.VIGILANCES)
-    return seed, {f"goal centers, vigilance {rho:g}": float(n) for rho, n in counts.items()}
+    return {f"goal centers, vigilance {rho:g}": float(n) for rho, n in counts.items()}
 
 
-def _training(
-    seed: int, distance: Distance, kicks: int, folder: _Folder, learning: TrainingSettings | None
-) -> Measured:
+def _training(seed: int, plan: Plan, distance: Distance) -> dict[str, Any]:
+    """Train an agent, and return its curve, as in `play`, and how often who scores."""
     agent = goal.train(
         seed,
         goal_distance=distance,
-        learning=learning,
-        checkpoint=checkpoint(folder, "goal", distance, seed),
+        learning=plan.goal_learning,
+        checkpoint=checkpoint(plan.folder, "goal", distance, seed),
         progress=False,
     )
-    policies = {
-        "ARKAQ": goal.greedy(agent),
-        "random actions": goal.at_random(seed),
-        "planner that sees the truth": goal.planner(),
+    learning = scored_while_learning(agent)
+    scored = _scored(agent, seed, distance, min(KICKS[distance], len(learning)), plan.episodes)
+    share = {who: 100 * float(goals.mean()) for who, goals in scored.items()}
+    first = {who: 100 * float(goals[:100].mean()) for who, goals in scored.items()}
+    grown = 100 * float(learning[-200:].mean()) - first["ARKAQ"]
+    return {
+        f"goals (%), {distance}, ARKAQ": share["ARKAQ, learned"],
+        f"goals (%), {distance}, random actions": share["random actions"],
+        f"goals (%), {distance}, planner that sees the truth": share["oracle"],
+        f"goals in the first 100 kicks (%), {distance}: ARKAQ minus random actions": (
+            first["ARKAQ"] - first["random actions"]
+        ),
+        f"goals (%), {distance}: the last 200 kicks minus the first 100": grown,
+        f"states, ARKAQ that scores, {distance}": float(agent.art.n_clusters_),
+        f"curve, {distance}": _curves(seed, distance, scored).to_numpy().tolist(),
     }
-    measured = {}
-    for who, policy in policies.items():
-        shots = goal.evaluate(policy, kicks, FRESH_SEEDS + seed, goal_distance=distance)
-        measured[f"goals (%), {distance}, {who}"] = 100 * float(shots.is_success.mean())
-    return seed, measured
+
+
+def curves(measured: Iterable[Measured]) -> pd.DataFrame:
+    """Return the curves of many runs, as `study` does.
+
+    Examples
+    --------
+    >>> curves([(7, {"x": 1.0, "curve, near": [["near", 7, "ARKAQ", 50, 20]]})]).values.tolist()
+    [['near', 7, 'ARKAQ', 50, 20]]
+    """
+    rows = [
+        row
+        for _, values in measured
+        for name, value in values.items()
+        if name.startswith("curve, ")
+        for row in value
+    ]
+    return pd.DataFrame(rows, columns=COLUMNS).sort_values(
+        COLUMNS[:2], ascending=[False, True], kind="stable", ignore_index=True
+    )
