@@ -182,8 +182,9 @@ def with_derived(runs: pd.DataFrame) -> pd.DataFrame:
     --------
     >>> runs = pd.DataFrame({"quantity": ["centers, vigilance 0.15", "centers, vigilance 0.025"],
     ...                      "seed": 3, "value": [150.0, 2200.0]})
-    >>> with_derived(runs).iloc[-1].tolist()
-    ['centers at vigilance 0.15 minus those at 0.025', 3, -2050.0]
+    >>> name, seed, value = with_derived(runs).iloc[-1]
+    >>> name, int(seed), float(value)
+    ('centers at vigilance 0.15 minus those at 0.025', 3, -2050.0)
     """
     wide = runs.dropna(subset="seed").pivot(index="seed", columns="quantity", values="value")
     parts = [runs]

@@ -87,11 +87,11 @@ def results(
 
     Examples
     --------
-    >>> brief = TrainingSettings(patterns=200, exploration=200, exploitation=0)
-    >>> brief_goal = TrainingSettings.goal(patterns=100, exploration=200, exploitation=0)
-    >>> table = results(1, 2, None, 1, False, brief, brief_goal)
-    >>> table.set_index("quantity").verdict["discounted, middle chain"]
-    'inside'
+    >>> results(seeds=0)
+    Traceback (most recent call last):
+    ValueError: seeds must be an integer >= 1, got 0
+
+    ``results(seeds=3, folder="mine")`` takes some minutes, and continues in the same folder.
     """
     plan = Plan(folder, approaches, learning, goal_learning)
     return judge(measure(seeds, plan, jobs, progress).runs)

@@ -61,10 +61,9 @@ def study(
 
     Examples
     --------
-    >>> brief = TrainingSettings(patterns=200, exploration=200, exploitation=0)
-    >>> table = study(1, 2, jobs=1, progress=False, learning=brief)
-    >>> set(load_study().quantity) <= set(table.quantity)
-    True
+    >>> study(seeds=0)
+    Traceback (most recent call last):
+    ValueError: seeds must be an integer >= 1, got 0
     """
     plan, tasks = Plan(folder, approaches, learning), []
     for seed in range(_checks.integer("seeds", seeds, 1)):

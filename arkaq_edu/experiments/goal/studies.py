@@ -251,7 +251,8 @@ def _training(seed: int, plan: Plan, distance: Distance) -> dict[str, Any]:
         progress=False,
     )
     learning = scored_while_learning(agent)
-    scored = _scored(agent, seed, distance, min(KICKS[distance], len(learning)), plan.episodes)
+    kicks, fresh = min(KICKS[distance], len(learning)), max(plan.episodes, BLOCK)
+    scored = _scored(agent, seed, distance, kicks, fresh)
     share = {who: 100 * float(goals.mean()) for who, goals in scored.items()}
     first = {who: 100 * float(goals[:100].mean()) for who, goals in scored.items()}
     grown = 100 * float(learning[-200:].mean()) - first["ARKAQ"]
