@@ -12,15 +12,16 @@ PYTHON = $(shell for p in python3 $(PYTHONS:%=python%) python; do \
 	2>/dev/null && echo $$p && break; done)
 NO_PYTHON = this course needs Python 3.11 to 3.15 with venv, and found none on the PATH \
 	(on Debian or Ubuntu: apt install python3 python3-venv)
-BENCH := build/bench
-REPORT := build/benchmarks
-# mushroom-rl brings torch, several GB: make bench PEERS+=mushroom-rl.
-PEERS := artlib fast-kalman filterpy pomdp-py pykalman pymdptoolbox quantecon simdkalman statsmodels
 PLATFORMS := x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu x86_64-pc-windows-msvc \
 	aarch64-apple-darwin
 
-.PHONY: help install lab author slides grading student teaching test test-lowest soak check \
-	reproduce bench guard notebooks lock wheels
+# A registry may stutter.
+export PIP_RETRIES := 10
+export UV_HTTP_RETRIES := 10
+export UV_HTTP_TIMEOUT := 120
+
+.PHONY: help install lab author slides grading student teaching test test-lowest test-newest \
+	soak fuzz check reproduce bench notebooks lock wheels
 
 help:
 	@echo 'make lab        open the course in JupyterLab, in a copy of your own (arkaq-course)'
@@ -28,14 +29,15 @@ help:
 	@echo 'make test       run every check and every test'
 	@echo 'make check      run only the linter and the type checker'
 	@echo 'make reproduce  run the experiments of the thesis and write the report'
-	@echo 'make bench      measure speed against other libraries; make bench ROOM=kalman for one'
-	@echo 'make guard      check in a few seconds that nothing has become twice as slow'
+	@echo 'make bench      measure speed against other libraries'
 	@echo 'make notebooks  run the notebooks and store what they show'
 	@echo 'make install    only make $(VENV), as each of the above does first'
 	@echo 'make lock       resolve requirements.lock anew from pyproject.toml'
 	@echo 'make wheels     check that the lock installs from wheels on every known system'
 	@echo 'make soak       run what takes an hour: kills, interrupts, millions of steps'
-	@echo 'make test-lowest  run the tests with the oldest versions that pyproject.toml allows'
+	@echo 'make test-lowest  test with the oldest versions that pyproject.toml allows'
+	@echo 'make test-newest  test with the newest versions there are'
+	@echo 'make fuzz       give the readers of files what they do not expect, for ten minutes'
 
 install: $(READY)
 
@@ -44,8 +46,7 @@ lab: $(READY)
 
 # All that the slides load comes along, so that a lecture needs no network.
 slides: $(READY)
-	npm install --silent --no-save --prefix build/slides reveal.js@4 mathjax@2 requirejs@2 \
-		jquery@3
+	npm install --silent --no-save --prefix build/slides reveal.js@4 mathjax@2 requirejs@2
 	$(BIN)/arkaq slides build/slides
 
 # nbgrader stays out of the students' environment: JupyterLab would load its extensions.
@@ -69,7 +70,7 @@ teaching: $(READY)
 author: $(READY)
 	$(BIN)/python -m jupyterlab notebooks/00_start_here.ipynb
 
-test: check guard
+test: check
 	$(BIN)/python -m pytest -n 2 --dist loadscope
 
 check: $(READY)
@@ -80,25 +81,8 @@ check: $(READY)
 reproduce: $(READY)
 	$(BIN)/arkaq reproduce
 
-# Its own environment, so that no peer's pins touch the course. A peer that does not install there
-# is left out of the report, with a word. One thread, ours and theirs.
-bench: $(BENCH)/ready
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BENCH)/bin/python -m benchmarks $(ROOM) --output $(REPORT)
-
-$(BENCH)/ready: $(BIN)/uv pyproject.toml
-	$(BIN)/uv --no-config venv --quiet --clear --python $(BIN)/python $(BENCH)
-	$(BIN)/uv --no-config pip install --quiet --python $(BENCH) --requirement pyproject.toml \
-		pyperf editables hatchling
-	$(BIN)/uv --no-config pip install --quiet --python $(BENCH) --no-deps --no-build-isolation \
-		--editable .
-	@for peer in $(PEERS); do \
-		$(BIN)/uv --no-config pip install --quiet --python $(BENCH) $$peer \
-		|| echo "$$peer does not install here: left out"; \
-	done
-	@touch $(BENCH)/ready
-
-guard: $(READY)
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks.guard
+bench: $(READY)
+	$(BIN)/python -m benchmarks
 
 notebooks: $(READY)
 	$(BIN)/python notebooks/store.py
@@ -119,19 +103,31 @@ wheels: $(BIN)/uv
 		echo "Python $$version, $$platform: all wheels are there"; \
 	done; done
 
-# What only the newest versions have must not be imported: pyproject.toml names the oldest.
+# With other versions runs what depends on them most: all examples, which call everything public,
+# pictures, widgets, environments, files. An oldest version is one that pyproject.toml names.
+OTHER_VERSIONS := arkaq_edu tests/figures tests/widgets tests/envs tests/arkaq/test_storage.py \
+	tests/test_files.py
+define with_versions
+	$(BIN)/uv --no-config venv --quiet --clear --python $(BIN)/python build/$(1)
+	$(BIN)/uv --no-config pip install --quiet --python build/$(1) --resolution $(1) \
+		--only-binary :all: --requirement pyproject.toml --extra test
+	NUMBA_CACHE_DIR=build/$(1)/numba build/$(1)/bin/python -m pytest -n 2 --dist loadscope -q \
+		$(OTHER_VERSIONS) -m 'not browser and not slow'
+endef
+
 test-lowest: $(BIN)/uv
-	$(BIN)/uv --no-config venv --quiet --clear --python $(BIN)/python build/lowest
-	$(BIN)/uv --no-config pip install --quiet --python build/lowest --resolution lowest-direct \
-		--only-binary :all: --requirement pyproject.toml --extra test editables hatchling
-	$(BIN)/uv --no-config pip install --quiet --python build/lowest --no-deps \
-		--no-build-isolation --editable .
-	build/lowest/bin/python -m pytest -n 2 --dist loadscope -q arkaq_edu tests \
-		--deselect tests/test_setup.py -m 'not browser'
+	$(call with_versions,lowest-direct)
+
+test-newest: $(BIN)/uv
+	$(call with_versions,highest)
 
 # Memory, drift, kills and interrupts over long runs. One process: what is measured is this one's.
 soak: $(READY)
 	$(BIN)/python -m pytest tests/soak -o python_files='soak_*.py' -p no:xdist
+
+fuzz: $(READY)
+	$(BIN)/python -m pip install --quiet --target build/fuzz/atheris --upgrade atheris
+	PYTHONPATH=build/fuzz/atheris $(BIN)/python -m tests.fuzz
 
 $(BIN)/uv: $(READY)
 	$(BIN)/python -m pip install --quiet uv

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,6 @@ LIBRARIES = {
     "reveal_url_prefix": "node_modules/reveal.js",
     "mathjax_url": "node_modules/mathjax/MathJax.js?config=TeX-AMS_CHTML-full,Safe",
     "require_js_url": "node_modules/requirejs/require.js",
-    "jquery_url": "node_modules/jquery/dist/jquery.min.js",
 }
 
 
@@ -42,13 +40,9 @@ def slides(out: Path | str) -> list[Path]:
 
     out, pages = Path(out), []
     local = LIBRARIES if (out / "node_modules").is_dir() else {}
-    exporter = SlidesExporter(
-        reveal_scroll=True, reveal_theme="white",
-        exclude_input_prompt=True, exclude_output_prompt=True, **local,
-    )  # fmt: skip
+    exporter = SlidesExporter(reveal_scroll=True, reveal_theme="simple", **local)
     for master in sorted((course_folder() / "notebooks").glob("*.ipynb")):
         notebook = nbformat.read(master, as_version=4)
-        notebook.cells = [part for cell in notebook.cells for part in _parts(cell)]
         for cell in notebook.cells:
             _place(cell)
         page = out / f"{master.stem}.slides.html"
@@ -56,17 +50,6 @@ def slides(out: Path | str) -> list[Path]:
             fresh.write_text(exporter.from_notebook_node(notebook)[0], "utf-8")
         pages.append(page)
     return pages
-
-
-def _parts(cell: Any) -> list[Any]:
-    """Return a cell of text in pieces, each of which begins with its heading."""
-    if cell.cell_type != "markdown":
-        return [cell]
-    texts = re.split(r"\n(?=##+ )", cell.source)
-    return [
-        type(cell)(cell, id=f"{cell.id}-{n}", source=text, metadata=type(cell)())
-        for n, text in enumerate(texts)
-    ]
 
 
 def _place(cell: Any) -> None:

@@ -21,6 +21,8 @@ import nbformat
 from nbclient import NotebookClient
 from nbformat import NotebookNode
 
+from arkaq_edu._files import replacing
+
 FOLDER = Path(__file__).parent
 KEPT_CELL_METADATA = ("nbgrader", "tags")
 WIDGET = "application/vnd.jupyter.widget-view+json"
@@ -109,7 +111,8 @@ def store(path: Path, *, check: bool = False) -> str | None:
     fresh = tidy(run(stored, path.parent))
     if check:
         return difference(stored, fresh)
-    path.write_text(text(fresh), encoding="utf-8")
+    with replacing(path) as new:
+        new.write_text(text(fresh), encoding="utf-8")
     return None
 
 

@@ -210,6 +210,14 @@ def test_every_link_in_the_guides_leads_somewhere():
     assert broken == []
 
 
+def test_every_promise_is_held_by_a_test_that_exists():
+    rows = re.findall(r"^\| ([A-Z].*) \| (`.*`) \|$", (ROOT / "SECURITY.md").read_text(), re.M)
+    assert len(rows) >= 12
+    for promise, tests in rows:
+        for path, name in re.findall(r"`(\S+)::(\w+)`", tests):
+            assert f"def {name}(" in (ROOT / path).read_text(), promise
+
+
 # Installing
 
 
@@ -439,6 +447,8 @@ def test_lab_opens_the_first_page(tmp_path):
     )  # fmt: skip
     try:
         page = _answer(f"http://127.0.0.1:{port}/?token=sesame", server)
+        with pytest.raises(OSError):  # what listens everywhere would answer here too
+            socket.create_connection(("127.0.0.2", port), timeout=5)
     finally:
         server.terminate()
         server.wait(30)

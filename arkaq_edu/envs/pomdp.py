@@ -14,15 +14,11 @@ from arkaq_edu.pomdp import POMDP, problem, read_pomdp
 
 
 class POMDPEnv(gymnasium.Env[np.int64, np.int64]):
-    """Act in any POMDP, of which only the observations are seen.
-
-    The model decides what states, actions and observations there are. For the course's own, see
-    `arkaq_edu.pomdp.problem`: "tiger" is the well-known one.
+    """A POMDP as an environment.
 
     ## Action space
 
-    ``Discrete(A)``: the actions of the POMDP, by number; ``env.unwrapped.pomdp.actions`` names
-    them.
+    ``Discrete(A)``: the actions of the POMDP.
 
     ## Observation space
 
@@ -33,23 +29,19 @@ class POMDPEnv(gymnasium.Env[np.int64, np.int64]):
 
     R(s, a), where s is the state in which the action is taken.
 
-    ## Starting state
+    ## Start
 
-    Drawn from the `start` of the POMDP. With ``options={"state": s}`` in ``reset``, it is `s`.
+    The state is drawn from the `start` of the POMDP. With ``options={"state": s}`` it is `s`.
 
-    ## Episode end
+    ## End
 
-    Terminated in a state that is never left and where nothing is earned (`ends` of the MDP). Most
-    POMDPs have no such state; ``max_episode_steps`` of `gymnasium.make` sets a time limit, after
-    which the episode is truncated.
+    The episode is terminated in a state that is never left and where nothing is earned (`ends` of
+    the MDP). Most POMDPs have no such state; ``max_episode_steps`` of `gymnasium.make` sets a time
+    limit.
 
-    ## Information
+    ## Info
 
     ``reset`` and ``step`` return the true `state`. The agent must not use it.
-
-    ## Version history
-
-    v0: first version.
 
     Parameters
     ----------

@@ -67,7 +67,7 @@ def record_kicks(n: int = 50, seed: int = 0, kick: Kick | None = None) -> pd.Dat
     1
     """
     _checks.integer("n", n, 1)
-    world = World(rng=seed, kick=kick)
+    world = World(rng=_checks.integer("seed", seed), kick=kick)
     rows = []
     for _ in range(n):
         world.reset(ROBOT_START, (0.0, -1800.0))

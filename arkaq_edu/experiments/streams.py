@@ -163,6 +163,7 @@ def count_centers(
     [2, 3]
     """
     eta = TrainingSettings().learning_rate if learning_rate is None else learning_rate
+    vigilances = _checks.array("vigilances", vigilances, (None,)).tolist()
     counts = [EuclideanART(rho, eta).fit(X).n_clusters_ for rho in vigilances]
     return pd.Series(counts, index=pd.Index(vigilances, name="vigilance"), name="centers")
 

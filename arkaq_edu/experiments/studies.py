@@ -250,11 +250,12 @@ def read_plan(path: str | os.PathLike[str]) -> dict[str, Any]:
     """
     try:
         plan = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except tomllib.TOMLDecodeError as error:
-        raise ValueError(f"{path} must be TOML: {error}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise ValueError(f"{path} must be TOML: {str(error)[:200]}") from error
     if not {"grid", "seeds"} <= plan.keys() <= {"grid", "seeds", "settings", "task"}:
         raise ValueError(
-            f"{path} must have grid and seeds, may have settings and task, got {', '.join(plan)}"
+            f"{path} must have grid and seeds, may have settings and task, "
+            f"got {_checks.shown(list(plan))}"
         )
     return plan
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from arkaq_edu import _checks
 from arkaq_edu.field.camera import Camera, GoalSighting, Sighting
 from arkaq_edu.field.goal import GoalSupervisor
 from arkaq_edu.field.view import bird_view
@@ -66,7 +67,7 @@ class Drive:
     """
 
     def __init__(self, seed: int = 0) -> None:
-        self.seed, self.camera = seed, Camera()
+        self.seed, self.camera = _checks.integer("seed", seed), Camera()
         # It only places the ball and judges, so its distance does not matter.
         self.supervisor = GoalSupervisor(distance=2000.0)
         self._begin()

@@ -295,7 +295,8 @@ def figure_5_5(
     >>> len(x), bool(y[-1] > 0)
     (11, True)
     """
-    rng, legs = np.random.default_rng(rng), Legs()
+    rng, legs = _checks.generator("rng", rng), Legs()
+    n = _checks.integer("n", n, 1, 1000)
     perfect, drifting = Legs(slide=0.0, pull=0.0, variation=0.0), replace(legs, variation=0.0)
     meant = motion.straight_walk(World(rng=rng, legs=perfect), cycles)
     drift = motion.straight_walk(World(rng=rng, legs=drifting), cycles)
@@ -374,7 +375,7 @@ def figure_5_8(
     >>> len(figure_5_8(Figure().subplots(), n=50).area.get_xdata())
     50
     """
-    rng, n = np.random.default_rng(rng), _checks.integer("n", n, 1)
+    rng, n = _checks.generator("rng", rng), _checks.integer("n", n, 1)
     ax = style.axes(ax)
     ax.axis("off")
     left, right = ax.inset_axes((0.0, 0.0, 0.46, 1.0)), ax.inset_axes((0.54, 0.0, 0.46, 1.0))

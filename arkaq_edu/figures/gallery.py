@@ -15,6 +15,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from arkaq_edu import figures
+from arkaq_edu._files import replacing
 from arkaq_edu.figures.drawing.plot import Plot
 
 _CHAPTERS = (
@@ -71,5 +72,6 @@ def draw(number: str, path: str | os.PathLike[str] | None = None, **options: Any
         return FIGURES[number](**options)
     figure = Figure(layout="constrained")
     plot = FIGURES[number](figure.subplots(), **options)
-    figure.savefig(path, dpi=150, bbox_inches="tight")
+    with replacing(path) as fresh:
+        figure.savefig(fresh, dpi=150, bbox_inches="tight")
     return plot

@@ -313,7 +313,7 @@ def figure_2_14(ax: Axes | None = None, *, horizon: int = 6) -> Plot:
     >>> figure_2_14(Figure().subplots())
     6 steps to go: a value over every belief, in 54 pieces
     """
-    V = solved("two_state", horizon)
+    V = solved("two_state", _checks.integer("horizon", horizon, 1))
     plans, p, values = upper_surface(V.alphas)
     steps = f"{horizon} step{'s' * (horizon > 1)}"
     title = f"{steps} to go: a value over every belief, in {len(plans)} pieces"
@@ -349,7 +349,7 @@ def figure_2_15(ax: Axes | None = None, *, horizon: int = 3) -> Plot:
     >>> figure_2_15(Figure().subplots())
     3 steps to go: the value is the upper surface of 7 lines
     """
-    V = solved("two_state", horizon)
+    V = solved("two_state", _checks.integer("horizon", horizon, 1))
     title = f"{horizon} steps to go: the value is the upper surface of {len(V)} lines"
     return plot_surface(V, problem("two_state"), ax, title=title)
 

@@ -29,6 +29,7 @@ from matplotlib.patches import Circle, Rectangle
 from matplotlib.quiver import Quiver
 from numpy.typing import ArrayLike, NDArray
 
+from arkaq_edu import _checks
 from arkaq_edu.art import ART2A, EuclideanART
 from arkaq_edu.experiments import segmentation
 from arkaq_edu.experiments.segmentation import SENSING, in_view
@@ -70,7 +71,7 @@ def figure_4_1(
     patterns = np.array([[1.25], [0.75]]) * style.directions(np.radians([50, 100]))
     art = ART2A(vigilance, learning_rate).fit(style.directions(np.radians([15, 115])))
     before = art.cluster_centers_
-    for _ in range(times):
+    for _ in range(_checks.integer("times", times, 0, 10_000)):
         art.learn_one(patterns[0])
     after = art.cluster_centers_
 

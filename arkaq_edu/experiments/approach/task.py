@@ -7,6 +7,7 @@ from typing import Any
 
 import gymnasium
 
+from arkaq_edu import _checks
 from arkaq_edu._paths import data_file
 from arkaq_edu.arkaq import Arkaq, Learner, Segmenter, Sensing, TrainingSettings
 
@@ -76,7 +77,7 @@ def train(
         learning=learning,
         segmenter=segmenter,
         learner=learner,
-        rng=seed,
+        rng=_checks.integer("seed", seed),
     )
     return agent.learn(make_task(**options), checkpoint=checkpoint, progress=progress)
 

@@ -60,10 +60,12 @@ def kick_trials(
     """
     if isinstance(goal_distance, str):
         goal_distance = start_of(goal_distance).distance
+    _checks.number("goal_distance", goal_distance, MIN_GOAL_DISTANCE, MAX_GOAL_DISTANCE)
     supervisor = GoalSupervisor(goal_distance)
+    orientations = np.atleast_1d(_checks.array("orientations", orientations, None))
     n, seed = _checks.integer("n", n, 1), _checks.integer("seed", seed)
     world, rows = World(), []
-    for orientation in np.atleast_1d(np.asarray(orientations, dtype=float)).tolist():
+    for orientation in orientations.tolist():
         goals = 0
         for number in range(n):
             world.rng = np.random.default_rng([seed, number])

@@ -131,6 +131,7 @@ def coverage(X: ArrayLike, width: float = 0.01) -> float:
     0.017
     """
     X = np.sort(_checks.array("X", X, (None, 1)).ravel())
+    _checks.number("width", width, 0, 2, open_low=True)
     ends = np.clip(np.column_stack([X - width / 2, X + width / 2]), -1.0, 1.0)
     new = np.maximum(ends[1:, 0], ends[:-1, 1])
     covered = (ends[0, 1] - ends[0, 0]) + (ends[1:, 1] - new).clip(0).sum()
@@ -170,6 +171,7 @@ def count_fact(n: int, vigilance: float) -> str:
     >>> count_fact(14, 0.06), count_fact(1, 0.3)
     ('14 centers at vigilance 0.06, the thesis printed 13', '1 center at vigilance 0.3')
     """
+    _checks.integer("n", n), _checks.number("vigilance", vigilance, 0, 1)
     printed = thesis_numbers().get(f"goal centers, vigilance {vigilance:g}")
     beside = "" if printed is None else f", the thesis printed {printed}"
     return f"{n} center{'s' if n > 1 else ''} at vigilance {vigilance:g}{beside}"

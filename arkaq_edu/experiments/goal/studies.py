@@ -51,7 +51,7 @@ def curve(scored: ArrayLike, block: int = BLOCK) -> pd.DataFrame:
     >>> curve([True, False, True, True, False], block=2).values.tolist()
     [[2, 1], [4, 2]]
     """
-    scored = np.asarray(scored, dtype=int)
+    scored = _checks.array("scored", scored, (None,)).astype(int)
     rows = len(scored) // _checks.integer("block", block, 1)
     goals = scored[: rows * block].reshape(rows, block).sum(axis=1)
     return pd.DataFrame({"kicks": block * np.arange(1, rows + 1), "goals": goals})

@@ -12,6 +12,7 @@ from arkaq_edu import _checks
 from arkaq_edu._paths import data_file
 from arkaq_edu.arkaq import Arkaq, Learner, Segmenter, Sensing, TrainingSettings
 from arkaq_edu.envs.score_goal import KICK, STARTS, Start
+from arkaq_edu.field.goal import MAX_GOAL_DISTANCE, MIN_GOAL_DISTANCE
 
 Distance = Literal["near", "far"]
 
@@ -41,7 +42,15 @@ def usual_vigilance(goal_distance: Distance | float = "near") -> float:
     >>> usual_vigilance("far"), usual_vigilance(2000.0)
     (0.05, 0.06)
     """
-    return VIGILANCE["far" if goal_distance == "far" else "near"]
+    return VIGILANCE["far" if _is_far(goal_distance) else "near"]
+
+
+def _is_far(goal_distance: Distance | float) -> bool:
+    """Tell the far place from the near one and from a number (mm), and refuse all else."""
+    if not isinstance(goal_distance, str):
+        _checks.number("goal_distance", goal_distance, MIN_GOAL_DISTANCE, MAX_GOAL_DISTANCE)
+        return False
+    return start_of(goal_distance) is STARTS["far"]
 
 
 def usual_learning(goal_distance: Distance | float = "near") -> TrainingSettings:
@@ -54,7 +63,7 @@ def usual_learning(goal_distance: Distance | float = "near") -> TrainingSettings
     >>> usual_learning("far").exploration
     1000
     """
-    if goal_distance == "far":
+    if _is_far(goal_distance):
         return TrainingSettings.goal(exploration=1000, exploitation=11_000)
     return TrainingSettings.goal()
 
@@ -177,7 +186,7 @@ def train(
         learning=learning,
         segmenter=segmenter,
         learner=learner,
-        rng=seed,
+        rng=_checks.integer("seed", seed),
     )
     look_around = make_look_around(goal_distance, agent.learning.period, **options)
     agent.segment(look_around, checkpoint=checkpoint, progress=progress)
