@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import matplotlib.pyplot as plt
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
 
 from arkaq_edu import _checks
 from arkaq_edu.experiments import read_study
@@ -46,8 +49,8 @@ def plot_study(
     ax : matplotlib.axes.Axes, optional
         Where to draw one quantity; by default on new axes.
     x : str, optional
-        The setting that runs across, by default the first with several values. Each combination
-        of the others has a line of its own, or marks if the values are not numbers.
+        The setting that runs across, by default the one with the most values. Each combination of
+        the others has a line of its own, or marks if the values are not numbers.
     quantity : str, optional
         What runs upward. By default every quantity has a panel.
 
@@ -59,7 +62,7 @@ def plot_study(
     Raises
     ------
     ValueError
-        If there is no such setting or quantity, or there are more lines than colors.
+        If there is no such setting or quantity.
 
     Examples
     --------
@@ -74,8 +77,9 @@ def plot_study(
     if table.empty:
         raise ValueError("study must have finished cells, got none")
     settings = [*table.columns[: [*table.columns].index("seed")]]
-    varying = [name for name in settings if table[name].nunique() > 1] or settings
-    x = _checks.choice("x", varying[0] if x is None else x, settings)
+    varying = [name for name in settings if table[name].nunique() > 1]
+    usual = max(varying or ["seed"], key=lambda name: table[name].nunique())
+    x = _checks.choice("x", usual if x is None else x, [*settings, "seed"])
     names = [*table.quantity.unique()]
     others = [name for name in varying if name != x]
     if quantity is not None:
@@ -111,7 +115,7 @@ def _panel(table: pd.DataFrame, ax: Axes | None, x: str, quantity: str, others: 
     for names, group in groups:
         at = group.groupby(group[x].map(places)).value
         curves[", ".join(map(str, names))] = (at.mean().index, at.mean(), at.std(ddof=0))
-    colors = (style.OURS,) if len(curves) == 1 else style.SERIES
+    colors = _colors(len(curves))
     if numeric:
         lines, bands = style.bands(ax, curves, colors)
     else:
@@ -123,7 +127,16 @@ def _panel(table: pd.DataFrame, ax: Axes | None, x: str, quantity: str, others: 
     return Plot(ax, lines=lines, bands=bands)
 
 
-def _marks(ax: Axes, curves: dict[str, Any], colors: tuple[str, ...]) -> tuple[Any, Any]:
+def _colors(n: int) -> Sequence[str]:
+    """Return a color for each of `n` lines: of many, from dark to light."""
+    if n == 1:
+        return (style.OURS,)
+    if n <= len(style.SERIES):
+        return style.SERIES
+    return [to_hex(plt.get_cmap("viridis")(at)) for at in np.linspace(0.0, 0.95, n)]
+
+
+def _marks(ax: Axes, curves: dict[str, Any], colors: Sequence[str]) -> tuple[Any, Any]:
     """Draw a mark with a bar of one standard deviation for each value, the curves side by side."""
     lines, bands = {}, {}
     for i, (name, (at, mean, std)) in enumerate(curves.items()):

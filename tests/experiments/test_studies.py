@@ -315,9 +315,19 @@ def test_a_study_is_drawn_from_its_folder(tmp_path):
 def test_names_are_drawn_side_by_side_and_numbers_across(tmp_path):
     grid = {"mean": {"none": 0.0, "five": 5.0}, "wait": [0.0, 0.001]}
     table = study(grid, 2, task=draw, jobs=1, progress=False)
-    by_name = plot_study(table, quantity="x")
+    by_name = plot_study(table, x="mean", quantity="x")
     assert [t.get_text() for t in by_name.ax.get_xticklabels()] == ["none", "five"]
     assert [*by_name.lines] == ["0.0", "0.001"]
     by_number = plot_study(table, x="wait", quantity="x")
     assert by_number.lines["five"].get_xdata().tolist() == [0.0, 0.001]
     assert by_number.lines["five"].get_ydata()[0] - by_number.lines["none"].get_ydata()[0] == 5
+
+
+def test_many_lines_have_a_color_each_and_a_study_of_one_setting_runs_over_its_seeds():
+    grid = {"wait": [0.0, 0.001], "mean": [float(i) for i in range(7)], "learner": ["a", "b", "c"]}
+    plot = plot_study(study(grid, 1, task=draw, jobs=1, progress=False), quantity="x")
+    assert plot.ax.get_xlabel() == "mean"  # the setting with the most values
+    assert len({line.get_color() for line in plot.lines.values()}) == len(plot.lines) == 6
+    plot = plot_study(study({}, 3, task=draw, jobs=1, progress=False), quantity="x")
+    assert plot.ax.get_xlabel() == "seed"
+    assert plot.lines[""].get_ydata().tolist() == [draw(seed)["x"] for seed in range(3)]
