@@ -308,7 +308,7 @@ TAKES_NO_NUMBERS = set(
         "experiments.mean_nis",
         "experiments.read_plan",
         "experiments.read_study",
-        "experiments.curves",
+        "experiments.goal.curves",
         "experiments.judge",
         "experiments.measure",  # its numbers, and those of results, go to the two studies
         "experiments.results",
