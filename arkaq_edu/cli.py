@@ -209,7 +209,7 @@ def watch(
 @click.option("--jobs", type=int, default=-1, show_default=True, help="Processes; -1: all cores.")
 @click.option("--quick", is_flag=True, help="A rehearsal in a minute: one seed, little training.")
 def reproduce(out: Path, seeds: int | None, approaches: int | None, jobs: int, quick: bool) -> None:
-    """Repeat the experiments of the thesis, and judge every number and claim.
+    """Repeat the experiments of the thesis, and judge its numbers.
 
     Writes index.html, which opens offline; results.csv, a row for every number and claim with a
     verdict; runs.csv, every value of every seed; curves.csv, goals against kicks; and run.json,
@@ -246,7 +246,7 @@ def reproduce(out: Path, seeds: int | None, approaches: int | None, jobs: int, q
 @click.argument("place", nargs=-1, required=True)
 @click.option("--all", "everything", is_flag=True, help="Name every function, test and notebook.")
 def trace(place: tuple[str, ...], everything: bool) -> None:
-    """Find the code, the tests and the notebook of a PLACE in the thesis.
+    """Find the code and the tests of a PLACE in the thesis.
 
     PLACE is the number of an equation, a figure or a section, such as 2.47, 5.16 or 4.2.2. Where
     two have the same number, say which: figure 2.1. A row of the errata is errata row 12.

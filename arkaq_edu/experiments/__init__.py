@@ -10,6 +10,7 @@
 - `studies`: `study`, every combination of some settings over many seeds, and `read_study`;
   `trials`: one cell of it; `parts`: other segmenters and learners to compare;
 - `runs`: many runs at once, and their summary;
+- `counts`: the search for a recipe that gives the five counts of centers;
 - `claims`: every number and every claim of the thesis, and what judges it;
 - `reproduce`: both problems over many seeds, with a verdict on every claim.
 """
@@ -21,6 +22,7 @@ __getattr__, __dir__, __all__ = _lazy.attach(
     submodules=[
         "approach",
         "claims",
+        "counts",
         "goal",
         "kicks",
         "parts",
