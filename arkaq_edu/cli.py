@@ -220,8 +220,9 @@ def reproduce(out: Path, seeds: int | None, approaches: int | None, jobs: int, q
     from arkaq_edu.experiments import agent_file, judge, measure
     from arkaq_edu.experiments.reproduce import QUICK, write
     from arkaq_edu.experiments.runs import Plan
+    from arkaq_edu.figures.errata import plot_count_search
     from arkaq_edu.figures.gallery import FIGURES
-    from arkaq_edu.figures.report import write_report
+    from arkaq_edu.figures.report import SEARCH, write_report
 
     seeds, approaches = seeds or (1 if quick else 30), approaches or (20 if quick else 500)
     plan = Plan(out, approaches, *(QUICK if quick else ()))
@@ -231,7 +232,7 @@ def reproduce(out: Path, seeds: int | None, approaches: int | None, jobs: int, q
     page = write_report(
         out,
         judge(measured.runs),
-        FIGURES,
+        FIGURES | {SEARCH: plot_count_search},
         note="A rehearsal with little training: its verdicts mean nothing." if quick else "",
         jobs=jobs,
         progress=True,

@@ -118,7 +118,7 @@ def test_reproduce_writes_a_page_and_its_tables(run, brief, tmp_path, monkeypatc
     assert printed == ["137", "333", "519", "825", "1933"]
     page = (tmp_path / "report" / "index.html").read_text()
     assert "://" not in page
-    assert re.findall('id="figure-([\\d.]+)"', page) == list(some)
+    assert re.findall('id="figure-([^"]+)"', page) == [*some, "search"]
     for quantity in table.index:
         assert f'id="{anchor(quantity)}"' in page
     assert len({anchor(quantity) for quantity in table.index}) == len(table)

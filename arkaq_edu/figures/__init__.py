@@ -8,7 +8,7 @@ import lazy_loader as _lazy
 __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
     submodules=[
-        "approach", "arkaq", "art", "belief", "drawing", "field",
+        "approach", "arkaq", "art", "belief", "drawing", "errata", "field",
         "gallery", "goal", "kalman", "learning", "mdp", "pomdp", "segmentation", "studies",
     ],
     submod_attrs={

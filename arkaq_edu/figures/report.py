@@ -24,7 +24,7 @@ from arkaq_edu.experiments.runs import run_all
 Draw = Callable[..., Any]
 
 #: CSS pixels of an inch of every figure: all texts have one size.
-WIDTH, LEAST_WIDTH = 76, 60
+WIDTH, LEAST_WIDTH = 80, 60
 _DPI = 144
 
 #: Where the parts of the table begin and end, by chapter or section of the place.
@@ -34,9 +34,12 @@ PARTS = (
     ("goal", "Scoring a goal", ("5.3", "5.4")),
     ("conclusion", "Conclusion", ("6",)),
 )
+#: The key of the one figure that the thesis does not have.
+SEARCH = "search"
 #: The chapters of the figures.
 CHAPTERS = {
     "2": "Background", "3": "ARKAQ learning", "4": "Implementation", "5": "Experiments",
+    SEARCH: "The search for one recipe",
 }  # fmt: skip
 
 #: Figures of the stream of sightings that comes with the course.
@@ -151,8 +154,8 @@ def _row(row: Any) -> str:
         place = f'<a href="#figure-{figure[1]}">{place}</a>'
     seeds = f", {_seeds(row.seeds)}" if measured else ""
     cells = (
-        ("thesis", escape(row.thesis) or "\N{EN DASH}"),
-        ("here", number(row.mean)),
+        ("thesis", escape(row.thesis).replace("-", "\N{MINUS SIGN}") or "\N{EN DASH}"),
+        ("here", number(row.mean) if measured else _exact(row.mean)),
         ("95 % of the seeds", f"{spread}<br>{_strip(row)}" if measured else spread),
         ("off by", off or "\N{EN DASH}"),
         ("verdict", _chip(row.verdict)),
@@ -190,6 +193,10 @@ def number(value: float) -> str:
     if abs(value) >= 100 or value == round(value):
         return f"{value:.0f}".replace("-", "\N{MINUS SIGN}")
     return f"{value:#.3g}".replace("-", "\N{MINUS SIGN}")
+
+
+def _exact(value: float) -> str:
+    return f"{value:.4g}".replace("-", "\N{MINUS SIGN}")
 
 
 def _signed(off: float, printed: str) -> str:
@@ -241,10 +248,11 @@ def _seeds(n: int) -> str:
 
 
 def _chapter(chapter: str, cards: Mapping[str, str]) -> str:
-    own = [card for number, card in cards.items() if number.startswith(f"{chapter}.")]
+    own = [card for number, card in cards.items() if number.split(".")[0] == chapter]
     if not own:
         return ""
-    title = f'<h3 id="figures-{chapter}">Chapter {chapter}: {CHAPTERS[chapter]}</h3>'
+    said = ("" if chapter == SEARCH else f"Chapter {chapter}: ") + CHAPTERS[chapter]
+    title = f'<h3 id="figures-{chapter}">{said}</h3>'
     return f'{title}\n<div class="figures">\n' + "\n".join(own) + "\n</div>"
 
 
@@ -283,7 +291,7 @@ def _card(
     seen = f"<span>{escape(fact[:1].upper() + fact[1:])}.</span>" if fact else ""
     whose = _whose(number, _taken(draw, options), int(results.seeds.max()))
     return (
-        f'<figure id="figure-{number}" style="flex-basis:{inches * WIDTH:.0f}px">\n'
+        f'<figure id="figure-{number}">\n'
         f'<div class="picture"><img loading="lazy" alt="Figure {number}: {caption} {escape(fact)}" '
         f'style="{size}" src="data:image/png;base64,{image}"></div>\n'
         f'<figcaption><a class="self" href="#figure-{number}">Figure {number}</a> {caption} {seen} '
@@ -324,7 +332,7 @@ def _differences(number: str, results: pd.DataFrame) -> str:
 def _number(row: Any) -> str:
     if row.seeds:
         return f"{number(row.mean)} ({number(row.low)} to {number(row.high)})"
-    return number(row.mean)
+    return _exact(row.mean)
 
 
 def _shows(place: str, figure: str) -> bool:
@@ -343,7 +351,7 @@ def _contents(parts: Mapping[str, pd.DataFrame], figures: Mapping[str, Draw]) ->
     ]
     shown = []
     for chapter, title in CHAPTERS.items():
-        own = [number for number in figures if number.startswith(f"{chapter}.")]
+        own = [number for number in figures if number.split(".")[0] == chapter]
         if own:
             jumps = " ".join(f'<a href="#figure-{number}">{number}</a>' for number in own)
             shown.append(
