@@ -12,6 +12,10 @@ PYTHON = $(shell for p in python3 $(PYTHONS:%=python%) python; do \
 	2>/dev/null && echo $$p && break; done)
 NO_PYTHON = this course needs Python 3.11 to 3.15 with venv, and found none on the PATH \
 	(on Debian or Ubuntu: apt install python3 python3-venv)
+BENCH := build/bench
+REPORT := build/benchmarks
+# mushroom-rl brings torch, several GB: make bench PEERS+=mushroom-rl.
+PEERS := artlib fast-kalman filterpy pomdp-py pykalman pymdptoolbox quantecon simdkalman statsmodels
 PLATFORMS := x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu x86_64-pc-windows-msvc \
 	aarch64-apple-darwin
 
@@ -21,7 +25,7 @@ export UV_HTTP_RETRIES := 10
 export UV_HTTP_TIMEOUT := 120
 
 .PHONY: help install lab author slides grading student teaching test test-lowest test-newest \
-	soak fuzz check reproduce bench notebooks lock wheels
+	soak fuzz check reproduce bench guard notebooks lock wheels
 
 help:
 	@echo 'make lab        open the course in JupyterLab, in a copy of your own (arkaq-course)'
@@ -29,7 +33,8 @@ help:
 	@echo 'make test       run every check and every test'
 	@echo 'make check      run only the linter and the type checker'
 	@echo 'make reproduce  run the experiments of the thesis and write the report'
-	@echo 'make bench      measure speed against other libraries'
+	@echo 'make bench      measure speed against other libraries; make bench ROOM=kalman for one'
+	@echo 'make guard      check in a few seconds that nothing has become twice as slow'
 	@echo 'make notebooks  run the notebooks and store what they show'
 	@echo 'make install    only make $(VENV), as each of the above does first'
 	@echo 'make lock       resolve requirements.lock anew from pyproject.toml'
@@ -70,7 +75,7 @@ teaching: $(READY)
 author: $(READY)
 	$(BIN)/python -m jupyterlab notebooks/00_start_here.ipynb
 
-test: check
+test: check guard
 	$(BIN)/python -m pytest -n 2 --dist loadscope
 
 check: $(READY)
@@ -81,8 +86,25 @@ check: $(READY)
 reproduce: $(READY)
 	$(BIN)/arkaq reproduce
 
-bench: $(READY)
-	$(BIN)/python -m benchmarks
+# Its own environment, so that no peer's pins touch the course. A peer that does not install there
+# is left out of the report, with a word. One thread, ours and theirs.
+bench: $(BENCH)/ready
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BENCH)/bin/python -m benchmarks $(ROOM) --output $(REPORT)
+
+$(BENCH)/ready: $(BIN)/uv pyproject.toml
+	$(BIN)/uv --no-config venv --quiet --clear --python $(BIN)/python $(BENCH)
+	$(BIN)/uv --no-config pip install --quiet --python $(BENCH) --requirement pyproject.toml \
+		pyperf editables hatchling
+	$(BIN)/uv --no-config pip install --quiet --python $(BENCH) --no-deps --no-build-isolation \
+		--editable .
+	@for peer in $(PEERS); do \
+		$(BIN)/uv --no-config pip install --quiet --python $(BENCH) $$peer \
+		|| echo "$$peer does not install here: left out"; \
+	done
+	@touch $(BENCH)/ready
+
+guard: $(READY)
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks.guard
 
 notebooks: $(READY)
 	$(BIN)/python notebooks/store.py

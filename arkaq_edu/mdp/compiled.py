@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 
+from arkaq_edu._checks import LARGEST
 from arkaq_edu._compiled import kernel
 
 
@@ -38,6 +39,16 @@ def replay(Q, visits, s, a, r, s_next, terminated, n_steps, alphas, gamma, chang
         if terminated[min(t, len(terminated) - 1)]:
             discount = 0.0
         changes[t] = update(Q, visits, s[t], a[t], r[t], s_next[t], discount, alphas)
+
+
+@kernel
+def in_range(n_states, n_actions, s, a, r, s_next):
+    """Tell whether all experiences are in range."""
+    good = True
+    for t in range(len(s)):
+        good &= 0 <= s[t] < n_states and 0 <= a[t] < n_actions and 0 <= s_next[t] < n_states
+        good &= abs(r[t]) <= LARGEST
+    return good
 
 
 @kernel
@@ -105,7 +116,10 @@ def running_sums(p, first):
 
 @kernel
 def draw(sums, successors, first, row, u):
-    """Draw the next state: the first successor with a running sum above u."""
+    """Draw the next state: the first successor with a running sum above u.
+
+    A row of a dense model has all states. Then `successors` is empty: the place is the state.
+    """
     low, high = first[row], first[row + 1] - 1
     while low < high:
         middle = (low + high) // 2
@@ -113,7 +127,7 @@ def draw(sums, successors, first, row, u):
             high = middle
         else:
             low = middle + 1
-    return successors[low]
+    return successors[low] if len(successors) else low - first[row]
 
 
 @kernel

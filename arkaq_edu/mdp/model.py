@@ -150,11 +150,18 @@ class MDP(Frozen):
         return self.T.reshape(-1, self.n_states)
 
     @cached_property
-    def cumulative(self) -> Any:
-        """The running sums of each row of `stacked`, sparse, without zeros: for drawing states."""
-        rows = sparse.csr_array(self.stacked)
-        sums = compiled.running_sums(rows.data, rows.indptr)
-        return frozen(sparse.csr_array((sums, rows.indices, rows.indptr), shape=rows.shape))
+    def outcomes(self) -> tuple[NDArray[Any], ...]:
+        """What `compiled.draw` reads: the running sums of the rows of `stacked`, and their places.
+
+        These are the sums, the states that they belong to, and where each row begins.
+        """
+        rows = self.stacked
+        if sparse.issparse(rows):
+            chances, states, first = rows.data, rows.indices, rows.indptr
+        else:
+            chances, states = rows.ravel(), np.empty(0, np.int32)
+            first = np.arange(0, rows.size + 1, self.n_states)
+        return tuple(map(frozen, (compiled.running_sums(chances, first), states, first)))
 
     def __repr__(self) -> str:
         return f"MDP({self.n_states} states, {self.n_actions} actions, gamma={self.gamma:g})"
@@ -254,8 +261,8 @@ class MDP(Frozen):
         if (r == -np.inf).any():
             wrong, state = divmod(int(row.flat[(r == -np.inf).argmax()]), self.n_states)
             raise ValueError(f"a must be an action that its state allows, got {wrong} in {state}")
-        sums, u = self.cumulative, generator("rng", rng).random(row.shape)
-        drawn = compiled.draws(sums.data, sums.indices, sums.indptr, row.ravel(), np.ravel(u))
+        u = generator("rng", rng).random(row.shape)
+        drawn = compiled.draws(*self.outcomes, row.ravel(), np.ravel(u))
         s_next = drawn.reshape(row.shape)[()]
         return s_next, r, self.ends[s_next]
 

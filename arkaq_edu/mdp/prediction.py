@@ -86,14 +86,13 @@ def simulate(
     states, actions = [integer("start", start, 0, mdp.n_states - 1)], []
     below = policy_chances(mdp, policy).cumsum(axis=1)
     below /= below[:, -1:]
-    sums = mdp.cumulative
     for u, v in rng.random(affordable("max_steps", (max_steps, 2))):
         s = states[-1]
         if mdp.ends[s]:
             break
         actions.append(int(below[s].searchsorted(u, side="right")))
         row = actions[-1] * mdp.n_states + s
-        states.append(int(compiled.draw(sums.data, sums.indices, sums.indptr, row, v)))
+        states.append(int(compiled.draw(*mdp.outcomes, row, v)))
     visited, a = np.array(states), np.array(actions, dtype=np.int64)
     return Episode(visited, a, mdp.R[visited[:-1], a], bool(mdp.ends[states[-1]]))
 

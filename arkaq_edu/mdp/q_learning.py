@@ -240,13 +240,16 @@ class QLearner:
         array([100.,  90.])
         """
         n_states, n_actions = self.Q.shape
+        experiences = s, a, r, s_next
+        if not _ready(self.Q, *experiences):
+            experiences = (
+                integers("s", s, 0, n_states - 1),
+                integers("a", a, 0, n_actions - 1),
+                array("r", r, (None,) * n_axes("r", r)),
+                integers("s_next", s_next, 0, n_states - 1),
+            )
         columns = np.atleast_1d(
-            integers("s", s, 0, n_states - 1),
-            integers("a", a, 0, n_actions - 1),
-            array("r", r, (None,) * n_axes("r", r)),
-            integers("s_next", s_next, 0, n_states - 1),
-            _flags("terminated", terminated),
-            integers("n_steps", n_steps, 1),
+            *experiences, _flags("terminated", terminated), integers("n_steps", n_steps, 1)
         )
         try:
             together = np.broadcast_arrays(*columns)
@@ -511,3 +514,14 @@ def _refusal(s: int, a: int, s_next: int, best: float) -> str:
     if best == -math.inf:
         return f"s_next must allow an action, got only Q = -inf in state {s_next}"
     return f"a must be an action that state {s} allows, got {a} with Q = -inf"
+
+
+def _ready(Q: NDArray[np.float64], *experiences: Any) -> bool:
+    """Return whether columns need neither a conversion nor a refusal, in one pass over them."""
+    kinds = (np.int64, np.int64, np.float64, np.int64)
+    return (
+        all(type(x) is np.ndarray and x.ndim == 1 for x in experiences)
+        and tuple(x.dtype for x in experiences) == kinds
+        and len({len(x) for x in experiences}) == 1
+        and compiled.in_range(*Q.shape, *experiences)
+    )

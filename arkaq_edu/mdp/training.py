@@ -424,11 +424,10 @@ def train(
     starts = np.where(mdp.ends, 0.0, mdp.start).cumsum()
     if not starts[-1] > 0:
         raise ValueError("mdp must be able to start in a state that is not an end")
-    sums = mdp.cumulative
     changes, returns, lengths = np.empty(n_steps), np.empty(n_steps), np.empty(n_steps, np.int64)
     n_episodes = compiled.train(
-        learner.Q, learner.visits, sums.data, sums.indices, sums.indptr, mdp.R, mdp.ends,
-        starts / starts[-1], learner.rng.random((n_steps, 3)), np.array(temperatures), rates,
-        learner.gamma, changes, returns, lengths,
+        learner.Q, learner.visits, *mdp.outcomes, mdp.R, mdp.ends, starts / starts[-1],
+        learner.rng.random((n_steps, 3)), np.array(temperatures), rates, learner.gamma,
+        changes, returns, lengths,
     )  # fmt: skip
     return TrainingRun(changes, returns[:n_episodes].copy(), lengths[:n_episodes].copy())

@@ -220,7 +220,7 @@ def test_a_copy_cannot_be_written_to_either(clone, form):
     mdp = form(random_mdp(21, max_states=4))
     mdp.step(0, 0, rng=0)
     other = clone(mdp)
-    tables = [other.R, other.start, other.ends, other.allowed, other.cumulative.data]
+    tables = [other.R, other.start, other.ends, other.allowed, *other.outcomes]
     tables += [T_a.data if sparse.issparse(T_a) else T_a for T_a in other.T]
     tables += [other.stacked.data if sparse.issparse(other.stacked) else other.stacked]
     for table in tables:
