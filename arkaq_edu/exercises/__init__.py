@@ -24,30 +24,46 @@ def expected_reward(b, R):
 """
 
 from arkaq_edu.exercises import solved
-from arkaq_edu.exercises.approach import backup, boltzmann, reward
-from arkaq_edu.exercises.art import choose, match, norm_r
-from arkaq_edu.exercises.belief import correct, expected_reward, observation_chances, predict
+from arkaq_edu.exercises.approach import backup, boltzmann, reward, which_recipe
+from arkaq_edu.exercises.arkaq import cell, decide, is_clear, sarsa_target
+from arkaq_edu.exercises.art import choose, finer_categories, match, norm_r
+from arkaq_edu.exercises.belief import (
+    correct,
+    expected_reward,
+    observation_chances,
+    predict,
+    what_is_wrong,
+)
+from arkaq_edu.exercises.errata import coldest, even_depth, variance_of
 from arkaq_edu.exercises.exercise import Exercise
-from arkaq_edu.exercises.field import ball, pose, scoring_chance
-from arkaq_edu.exercises.goal import kicks_needed, state_bounds, worth
-from arkaq_edu.exercises.kalman import combine, nis, turn
-from arkaq_edu.exercises.learning import discounted_sum, epsilon_greedy, finite_sum, regret
-from arkaq_edu.exercises.mdp import bellman, greedy, rate, td
-from arkaq_edu.exercises.pomdp import best, lead, two_steps
-from arkaq_edu.exercises.segmentation import nearest, present, scale
+from arkaq_edu.exercises.field import ball, pose, scoring_chance, what_a_test_says
+from arkaq_edu.exercises.goal import kicks_needed, state_bounds, what_to_improve, worth
+from arkaq_edu.exercises.kalman import combine, nis, turn, what_to_change
+from arkaq_edu.exercises.learning import (
+    discounted_sum,
+    epsilon_greedy,
+    finite_sum,
+    regret,
+    which_best,
+)
+from arkaq_edu.exercises.mdp import bellman, greedy, rate, smallest_state, td
+from arkaq_edu.exercises.pomdp import best, lead, two_steps, worth_a_look
+from arkaq_edu.exercises.segmentation import nearest, present, scale, too_fine
 
 #: The exercises of each chapter, in their order.
 CHAPTERS: dict[str, tuple[Exercise, ...]] = {
-    "learning": (finite_sum, discounted_sum, epsilon_greedy, regret),
-    "mdp": (bellman, greedy, td, rate),
-    "belief": (predict, correct, observation_chances, expected_reward),
-    "pomdp": (two_steps, best, lead),
-    "kalman": (combine, turn, nis),
-    "art": (match, choose, norm_r),
-    "segmentation": (scale, nearest, present),
-    "field": (pose, ball, scoring_chance),
-    "approach": (reward, boltzmann, backup),
-    "goal": (state_bounds, worth, kicks_needed),
+    "learning": (finite_sum, discounted_sum, epsilon_greedy, regret, which_best),
+    "mdp": (bellman, greedy, td, rate, smallest_state),
+    "belief": (predict, correct, observation_chances, expected_reward, what_is_wrong),
+    "pomdp": (two_steps, best, lead, worth_a_look),
+    "kalman": (combine, turn, nis, what_to_change),
+    "art": (match, choose, norm_r, finer_categories),
+    "segmentation": (scale, nearest, present, too_fine),
+    "field": (pose, ball, scoring_chance, what_a_test_says),
+    "arkaq": (decide, cell, sarsa_target, is_clear),
+    "approach": (reward, boltzmann, backup, which_recipe),
+    "goal": (state_bounds, worth, kicks_needed, what_to_improve),
+    "errata": (coldest, variance_of, even_depth),
 }
 
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from arkaq_edu.exercises.exercise import Cases, Draws, Part, Rule, ask, exercise
+from arkaq_edu.exercises.exercise import Cases, Draws, Part, Rule, ask, exercise, judgement
 
 
 def _places(rng: np.random.Generator) -> Draws:
@@ -84,3 +84,9 @@ def backup(q, rewards, next_values, ended, alpha, gamma):
     if not ended:
         target += gamma**n * np.max(next_values)
     return q + alpha * (target - q)
+
+
+@exercise(judgement(4))
+def which_recipe():
+    """Return the number of the right answer."""
+    return 3

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from arkaq_edu.exercises.exercise import Draws, Part, exercise, index
+from arkaq_edu.exercises.exercise import Draws, Part, exercise, index, judgement
 
 
 def _bits(rng: np.random.Generator, m: int) -> NDArray[np.int64]:
@@ -95,3 +95,9 @@ def norm_r(u, z, c, d):
     p = u + d * z
     r = (u + c * p) / (np.linalg.norm(u) + np.linalg.norm(c * p))
     return np.linalg.norm(r)
+
+
+@exercise(judgement(4))
+def finer_categories():
+    """Return the number of the right answer."""
+    return 2

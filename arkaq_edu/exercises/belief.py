@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from arkaq_edu.exercises.exercise import Draws, Part, exercise
+from arkaq_edu.exercises.exercise import Draws, Part, exercise, judgement
 
 
 def any_belief(rng: np.random.Generator, n: int) -> NDArray[np.float64]:
@@ -65,3 +65,9 @@ def expected_reward(b, R):
     Thesis, section 2.3.3, equation 2.17.
     """
     return b @ R
+
+
+@exercise(judgement(4))
+def what_is_wrong():
+    """Return the number of the right answer."""
+    return 4

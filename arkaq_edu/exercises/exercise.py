@@ -381,9 +381,13 @@ class Exercise:
         # What a single try gives is judged number by number: it may stand for thousands of calls.
         right = good if len(good) > 1 else part.close(found[0], wanted[0])
         share = self._share(part, found, wanted, right)
-        if not part.right and any(
-            all(map(np.allclose, found, [value.round(digits) for value in wanted]))
-            for digits in range(4)
+        if (
+            not part.right
+            and wanted[0].dtype.kind == "f"
+            and any(
+                all(map(np.allclose, found, [value.round(digits) for value in wanted]))
+                for digits in range(4)
+            )
         ):
             return share, "you round the answer: return it with all its digits"
         tries = zip(found, wanted, cases, good, strict=True)
@@ -478,6 +482,21 @@ def exercise(only: Part | None = None, /, **steps: Part) -> Callable[[Rule], Exe
         return Exercise(right, parts=tuple(parts.values()), **table)
 
     return make
+
+
+def judgement(options: int) -> Part:
+    """Return the step of an exercise that asks for the number of one of so many options."""
+
+    def answer(function: Callable[..., Any]) -> int:
+        found = ask(function)
+        if isinstance(found, bool) or found not in range(1, options + 1):
+            raise ExerciseError(
+                f"the answer should be the number of an option, from 1 to {options}, "
+                f"not {short(found)}"
+            )
+        return int(found)
+
+    return Part(lambda rng: [()], answer=answer)
 
 
 def index(

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import norm
 
-from arkaq_edu.exercises.exercise import Draws, ExerciseError, Part, Rule, ask, exercise
+from arkaq_edu.exercises.exercise import Draws, ExerciseError, Part, Rule, ask, exercise, judgement
 from arkaq_edu.field import pitch
 from arkaq_edu.field.camera import FOCAL_LENGTH
 
@@ -92,3 +92,9 @@ def scoring_chance(distance, sigma, aim):
     """
     post = np.arctan(400 / distance)
     return norm.cdf((post - aim) / sigma) - norm.cdf((-post - aim) / sigma)
+
+
+@exercise(judgement(4))
+def what_a_test_says():
+    """Return the number of the right answer."""
+    return 1

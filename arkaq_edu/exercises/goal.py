@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from arkaq_edu.exercises.exercise import Draws, ExerciseError, Part, Rule, ask, exercise
+from arkaq_edu.exercises.exercise import Draws, ExerciseError, Part, Rule, ask, exercise, judgement
 
 
 def _whole(things: str) -> Rule:
@@ -84,3 +84,9 @@ def kicks_needed(p, q, sigmas):
     """
     variance = p * (1 - p) + q * (1 - q)
     return int(np.ceil(sigmas**2 * variance / (p - q) ** 2))
+
+
+@exercise(judgement(4))
+def what_to_improve():
+    """Return the number of the right answer."""
+    return 4

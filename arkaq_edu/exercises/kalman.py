@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from arkaq_edu.exercises.exercise import Draws, Part, exercise
+from arkaq_edu.exercises.exercise import Draws, Part, exercise, judgement
 
 
 def _rulers(rng: np.random.Generator) -> Draws:
@@ -57,3 +57,9 @@ def nis(innovation, S):
     Navigation", 2001, section 5.4. Not in the thesis.
     """
     return innovation @ np.linalg.inv(S) @ innovation
+
+
+@exercise(judgement(4))
+def what_to_change():
+    """Return the number of the right answer."""
+    return 3

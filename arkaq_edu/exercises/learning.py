@@ -5,7 +5,15 @@ import functools
 import numpy as np
 from numpy.typing import NDArray
 
-from arkaq_edu.exercises.exercise import Draws, ExerciseError, Part, Rule, exercise, index
+from arkaq_edu.exercises.exercise import (
+    Draws,
+    ExerciseError,
+    Part,
+    Rule,
+    exercise,
+    index,
+    judgement,
+)
 
 #: How often each machine is pulled is counted over so many calls.
 PULLS = 2000
@@ -112,3 +120,9 @@ def regret(p, arms):
     Thesis, section 2.1.2, the third measure.
     """
     return np.cumsum(p.max() - p[arms])
+
+
+@exercise(judgement(4))
+def which_best():
+    """Return the number of the right answer."""
+    return 3

@@ -3,7 +3,16 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from arkaq_edu.exercises.exercise import Cases, Draws, ExerciseError, Part, Rule, ask, exercise
+from arkaq_edu.exercises.exercise import (
+    Cases,
+    Draws,
+    ExerciseError,
+    Part,
+    Rule,
+    ask,
+    exercise,
+    judgement,
+)
 
 #: A rate is tried on so many visits. Then at most so much may be left of the first value, and of
 #: the standard deviation of a single target: 1/n passes, and n^-p with p from 0.55 to 1.
@@ -92,3 +101,9 @@ def rate(n):
     Thesis, sections 2.2.3 and 4.3; H. Robbins, S. Monro, "A stochastic approximation method", 1951.
     """
     return n**-0.7
+
+
+@exercise(judgement(4))
+def smallest_state():
+    """Return the number of the right answer."""
+    return 1

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from arkaq_edu.exercises.belief import any_belief
-from arkaq_edu.exercises.exercise import Draws, ExerciseError, Part, Rule, ask, exercise
+from arkaq_edu.exercises.exercise import Draws, ExerciseError, Part, Rule, ask, exercise, judgement
 
 
 def _plans_of_two_steps(rng: np.random.Generator) -> Draws:
@@ -65,3 +65,9 @@ def lead(b, alpha, others):
     Thesis, section 2.3.6.
     """
     return b @ alpha - (others @ b).max()
+
+
+@exercise(judgement(4))
+def worth_a_look():
+    """Return the number of the right answer."""
+    return 2

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arkaq_edu.art import EuclideanART
-from arkaq_edu.exercises.exercise import Draws, Part, Rule, ask, exercise, index
+from arkaq_edu.exercises.exercise import Draws, Part, Rule, ask, exercise, index, judgement
 
 
 def _sightings(rng: np.random.Generator) -> Draws:
@@ -127,3 +127,9 @@ def present(pattern, centers, vigilance, eta):
     centers = centers.copy()
     centers[i] += eta * (pattern - centers[i])
     return centers
+
+
+@exercise(judgement(4))
+def too_fine():
+    """Return the number of the right answer."""
+    return 4

@@ -4,6 +4,7 @@ Every explorer is an `Explorer`: plain controls, a plain function from their val
 and one canvas that draws any scene.
 """
 
+from arkaq_edu.widgets.arkaq import sighting_explorer
 from arkaq_edu.widgets.art import letters_explorer, resonance_explorer
 from arkaq_edu.widgets.belief import belief_explorer
 from arkaq_edu.widgets.explorer import Buttons, CanvasView, Drag, Explorer
@@ -31,6 +32,7 @@ __all__ = [
     "q_learning_explorer",
     "resonance_explorer",
     "scoring_explorer",
+    "sighting_explorer",
     "value_explorer",
     "vigilance_explorer",
 ]
