@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from pathlib import Path
 from typing import Any
 
@@ -45,11 +46,32 @@ def slides(out: Path | str) -> list[Path]:
         notebook = nbformat.read(master, as_version=4)
         for cell in notebook.cells:
             _place(cell)
+            describe(cell)
         page = out / f"{master.stem}.slides.html"
         with replacing(page) as fresh:
             fresh.write_text(exporter.from_notebook_node(notebook)[0], "utf-8")
         pages.append(page)
     return pages
+
+
+def describe(cell: Any) -> None:
+    """Show each picture of a cell with its alt text, which nbconvert leaves out.
+
+    Examples
+    --------
+    >>> from nbformat.v4 import new_code_cell, new_output
+    >>> shown = {"data": {"image/png": "iVBO"}, "metadata": {"image/png": {"alt": "a < b"}}}
+    >>> cell = new_code_cell("draw()", outputs=[new_output("display_data", **shown)])
+    >>> describe(cell)
+    >>> cell.outputs[0].data["text/html"]
+    '<img alt="a &lt; b" src="data:image/png;base64,iVBO">'
+    """
+    for output in cell.get("outputs", []):
+        data = output.get("data", {})
+        if "image/png" in data and "text/html" not in data:
+            words = html.escape(output.metadata.get("image/png", {}).get("alt", ""))
+            source = f"data:image/png;base64,{data['image/png'].strip()}"
+            data["text/html"] = f'<img alt="{words}" src="{source}">'
 
 
 def _place(cell: Any) -> None:

@@ -7,6 +7,7 @@
 A notebook is run from top to bottom in a new kernel, in its own folder. What is stored holds no
 timings, no machine's or editor's metadata, no cell ids drawn at random, and no widget's model:
 reopened without a kernel a model shows "not found", where the picture beside it shows the widget.
+The text beside a picture is its alt text; a cell's own `alt` metadata goes before it.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from nbformat import NotebookNode
 from arkaq_edu._files import replacing
 
 FOLDER = Path(__file__).parent
-KEPT_CELL_METADATA = ("nbgrader", "tags")
+KEPT_CELL_METADATA = ("alt", "nbgrader", "tags")
 WIDGET = "application/vnd.jupyter.widget-view+json"
 
 
@@ -74,6 +75,9 @@ def tidy(notebook: NotebookNode) -> NotebookNode:
                 data.pop("image/jpeg", None)  # the same picture once more, from Pillow
             if "metadata" in output:
                 output.metadata = NotebookNode()
+            if "image/png" in data:
+                words = cell.metadata.get("alt", data.get("text/plain", ""))
+                output.metadata["image/png"] = {"alt": words}
     nbformat.validate(tidied)
     return tidied
 

@@ -224,7 +224,7 @@ def figure_5_41(ax: Axes | None = None, *, study: pd.DataFrame | None = None) ->
 
 
 def _line_axes(ax: Axes | None, title: str) -> Axes:
-    ax = style.axes(ax, xlabel="goal orientation (rad), left of the robot is left", title=title)
+    ax = style.axes(ax, xlabel="goal to the left  |  to the right (rad)", title=title)
     ax.set(xlim=style.VIEW_ORIENTATION, ylim=(0, 1), yticks=[])
     ax.spines["left"].set_visible(False)
     return ax

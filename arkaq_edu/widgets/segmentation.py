@@ -151,7 +151,7 @@ def _map(found: NDArray[np.float64]) -> Panel:
     window = (*segmentation.ORIENTATION, *segmentation.DISTANCE)
     dots = Points(across, up, radius=style.dot_radius(len(found)) / 0.75)
     return Panel(
-        "ball orientation (rad), left of the robot is left", "distance (mm)",
+        "ball to the left  |  to the right (rad)", "distance (mm)",
         style.VIEW_ORIENTATION, style.VIEW_DISTANCE,
         [Cells(polygons, colors, window), dots], width=1.45,
     )  # fmt: skip

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
+import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.figure import Figure
 
 
 class Plot:
@@ -34,6 +38,7 @@ class Plot:
     def __init__(self, ax: Any, fact: str = "", **artists: Any) -> None:
         self.ax = ax
         self.fact = fact
+        self._figure().set_label(fact)
         vars(self).update(artists)
 
     def __getattr__(self, name: str) -> Any:
@@ -42,5 +47,43 @@ class Plot:
 
     def __repr__(self) -> str:
         """Return the titles of the axes, or the fact where they have none."""
-        titles = [ax.get_title(loc="left") for ax in np.ravel(self.ax)]
-        return "; ".join(filter(None, titles)) or self.fact
+        return _titles(np.ravel(self.ax)) or self.fact
+
+    def _ipython_display_(self) -> None:
+        """Leave it to the picture to state the fact, where a notebook shows the picture."""
+        shown = "inline" in matplotlib.get_backend() and plt.fignum_exists(
+            getattr(self._figure(), "number", -1)
+        )
+        if not shown:
+            print(self)
+
+    def _figure(self) -> Any:
+        return np.ravel(self.ax)[0].get_figure(root=True)
+
+
+def fact_of(figure: Figure) -> str:
+    """Return what a figure states: its titles, or the fact that a `Plot` gave it.
+
+    Examples
+    --------
+    >>> figure = Figure()
+    >>> _ = figure.subplots().set_title("The line rises", loc="left")
+    >>> fact_of(figure)
+    'The line rises'
+    """
+    return _titles(figure.axes) or figure.get_suptitle() or figure.get_label() or repr(figure)
+
+
+def _titles(axes: Any) -> str:
+    return "; ".join(filter(None, (ax.get_title(loc="left") for ax in axes)))
+
+
+def _describe_pictures() -> None:
+    """In a notebook, let a figure's fact be the text of its picture, and so its alt text."""
+    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+    if shell is not None:
+        text = shell.display_formatter.formatters["text/plain"]
+        text.for_type(Figure, lambda figure, printer, cycle: printer.text(fact_of(figure)))
+
+
+_describe_pictures()

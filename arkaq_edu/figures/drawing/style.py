@@ -101,7 +101,7 @@ def view_axes(ax: Axes | None = None, *, title: str = "") -> Axes:
     >>> [float(end) for end in view_axes(Figure().subplots()).get_xlim()]
     [0.5, -0.5]
     """
-    xlabel = "ball orientation (rad), left of the robot is left"
+    xlabel = "ball to the left  |  to the right (rad)"
     ax = axes(ax, xlabel=xlabel, ylabel="distance (mm)", title=title)
     ax.set(xlim=VIEW_ORIENTATION, ylim=VIEW_DISTANCE)
     return ax
