@@ -14,7 +14,7 @@ NO_PYTHON = this course needs Python 3.11 to 3.15 with venv, and found none on t
 	(on Debian or Ubuntu: apt install python3 python3-venv)
 BENCH := build/bench
 REPORT := build/benchmarks
-# mushroom-rl brings torch, several GB: make bench PEERS+=mushroom-rl.
+# mushroom-rl brings torch, several GB. It is compared if you put it into build/bench yourself.
 PEERS := artlib fast-kalman filterpy pomdp-py pykalman pymdptoolbox quantecon simdkalman statsmodels
 PLATFORMS := x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu x86_64-pc-windows-msvc \
 	aarch64-apple-darwin
