@@ -23,6 +23,7 @@ def expected_reward(b, R):
     return b @ R
 """
 
+from arkaq_edu._checks import choice
 from arkaq_edu.exercises import solved
 from arkaq_edu.exercises.approach import backup, boltzmann, reward, which_recipe
 from arkaq_edu.exercises.arkaq import cell, decide, is_clear, sarsa_target
@@ -77,13 +78,18 @@ def progress(chapter: str | None = None) -> None:
     chapter : str, optional
         The name of a chapter, such as "kalman".
 
+    Raises
+    ------
+    ValueError
+        If there is no such chapter.
+
     Examples
     --------
     >>> progress("art")  # doctest: +ELLIPSIS
     art: ... of 3 exercises solved...
     """
     done = solved.names()
-    for name in [chapter] if chapter else CHAPTERS:
+    for name in CHAPTERS if chapter is None else [choice("chapter", chapter, CHAPTERS)]:
         names = [exercise.name for exercise in CHAPTERS[name]]
         still = ", ".join(n for n in names if n not in done)
         count = sum(n in done for n in names)

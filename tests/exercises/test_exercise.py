@@ -285,6 +285,8 @@ def test_what_is_solved_is_kept_in_the_students_copy_and_nowhere_else(
     exercises.progress()
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == len(exercises.CHAPTERS) and all(": 0 of " in line for line in lines)
+    with pytest.raises(ValueError, match=r"chapter must be 'learning' or .*, got 'kallman'"):
+        exercises.progress("kallman")
     exercises.match.check(lambda *case: exercises.match(*case))
     assert json.loads((tmp_path / "progress.json").read_text()) == {"solved": ["match"]}
 
