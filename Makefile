@@ -51,7 +51,8 @@ lab: $(READY)
 
 # All that the slides load comes along, so that a lecture needs no network.
 slides: $(READY)
-	npm install --silent --no-save --prefix build/slides reveal.js@4 mathjax@2 requirejs@2
+	npm install --silent --no-save --prefix build/slides reveal.js@4 mathjax@2 requirejs@2 \
+		jquery@3
 	$(BIN)/arkaq slides build/slides
 
 # nbgrader stays out of the students' environment: JupyterLab would load its extensions.

@@ -111,7 +111,8 @@ def _shown_next(cells: list[dict[str, Any]]) -> list[str]:
     after = cells[answers[0] + 1 :][:1]
     if after and after[0]["cell_type"] == "markdown":
         lines += ["", *"".join(after[0]["source"]).split("\n\n")[0].splitlines()]
-    return [line for line in lines if not line.startswith(("<Figure", "#"))]
+    said = [line for line in lines if not line.startswith(("<Figure", "#"))]
+    return said or ["(A picture: see the page.)"]
 
 
 def _graded(cell: dict[str, Any]) -> bool:

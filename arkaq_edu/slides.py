@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import re
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ LIBRARIES = {
     "reveal_url_prefix": "node_modules/reveal.js",
     "mathjax_url": "node_modules/mathjax/MathJax.js?config=TeX-AMS_CHTML-full,Safe",
     "require_js_url": "node_modules/requirejs/require.js",
+    "jquery_url": "node_modules/jquery/dist/jquery.min.js",
 }
 
 
@@ -41,9 +43,13 @@ def slides(out: Path | str) -> list[Path]:
 
     out, pages = Path(out), []
     local = LIBRARIES if (out / "node_modules").is_dir() else {}
-    exporter = SlidesExporter(reveal_scroll=True, reveal_theme="simple", **local)
+    exporter = SlidesExporter(
+        reveal_scroll=True, reveal_theme="white",
+        exclude_input_prompt=True, exclude_output_prompt=True, **local,
+    )  # fmt: skip
     for master in sorted((course_folder() / "notebooks").glob("*.ipynb")):
         notebook = nbformat.read(master, as_version=4)
+        notebook.cells = [part for cell in notebook.cells for part in _parts(cell)]
         for cell in notebook.cells:
             _place(cell)
             describe(cell)
@@ -72,6 +78,17 @@ def describe(cell: Any) -> None:
             words = html.escape(output.metadata.get("image/png", {}).get("alt", ""))
             source = f"data:image/png;base64,{data['image/png'].strip()}"
             data["text/html"] = f'<img alt="{words}" src="{source}">'
+
+
+def _parts(cell: Any) -> list[Any]:
+    """Return a cell of text in pieces, each of which begins with its heading."""
+    if cell.cell_type != "markdown":
+        return [cell]
+    texts = re.split(r"\n(?=##+ )", cell.source)
+    return [
+        type(cell)(cell, id=f"{cell.id}-{n}", source=text, metadata=type(cell)())
+        for n, text in enumerate(texts)
+    ]
 
 
 def _place(cell: Any) -> None:

@@ -97,6 +97,11 @@ def test_blank_and_wrong_earn_nothing_right_all_and_half_right_something(course,
         submission(course, chapter, kind)
     warned = nbgrader(course, "autograde", chapter)
     assert "cannot be converted" not in warned and "partial credit" not in warned
+    blank = nbformat.read(
+        course / "autograded" / "blank" / chapter / f"{chapter}.ipynb", as_version=4
+    )
+    errors = [o for cell in blank.cells for o in cell.get("outputs", []) if "ename" in o]
+    assert errors == [], "a blank page runs to its end"
     nbgrader(course, "generate_feedback", chapter)
     nbgrader(course, "export", "--to", "marks.csv")
     marks = pd.read_csv(course / "marks.csv").set_index(["assignment", "student_id"]).loc[chapter]

@@ -14,11 +14,15 @@ from arkaq_edu.pomdp import POMDP, problem, read_pomdp
 
 
 class POMDPEnv(gymnasium.Env[np.int64, np.int64]):
-    """A POMDP as an environment.
+    """Act in any POMDP, of which only the observations are seen.
+
+    The model decides what states, actions and observations there are. For the course's own, see
+    `arkaq_edu.pomdp.problem`: "tiger" is the well-known one.
 
     ## Action space
 
-    ``Discrete(A)``: the actions of the POMDP.
+    ``Discrete(A)``: the actions of the POMDP, by number; ``env.unwrapped.pomdp.actions`` names
+    them.
 
     ## Observation space
 
@@ -29,19 +33,23 @@ class POMDPEnv(gymnasium.Env[np.int64, np.int64]):
 
     R(s, a), where s is the state in which the action is taken.
 
-    ## Start
+    ## Starting state
 
-    The state is drawn from the `start` of the POMDP. With ``options={"state": s}`` it is `s`.
+    Drawn from the `start` of the POMDP. With ``options={"state": s}`` in ``reset``, it is `s`.
 
-    ## End
+    ## Episode end
 
-    The episode is terminated in a state that is never left and where nothing is earned (`ends` of
-    the MDP). Most POMDPs have no such state; ``max_episode_steps`` of `gymnasium.make` sets a time
-    limit.
+    Terminated in a state that is never left and where nothing is earned (`ends` of the MDP). Most
+    POMDPs have no such state; ``max_episode_steps`` of `gymnasium.make` sets a time limit, after
+    which the episode is truncated.
 
-    ## Info
+    ## Information
 
     ``reset`` and ``step`` return the true `state`. The agent must not use it.
+
+    ## Version history
+
+    v0: first version.
 
     Parameters
     ----------

@@ -71,7 +71,7 @@ def plot_study(
     >>> table = pd.DataFrame(rows, columns=["vigilance", "seed", "quantity", "value"])
     >>> plot = plot_study(table, Figure().subplots(), quantity="success")
     >>> plot, plot.lines[""].get_ydata().tolist()
-    (success (%) by vigilance, 2 seeds, [91.0, 91.0])
+    (success by vigilance, 2 seeds, [91.0, 91.0])
     """
     table = study if isinstance(study, pd.DataFrame) else read_study(Path(study))
     if table.empty:
@@ -106,7 +106,7 @@ def _panel(table: pd.DataFrame, ax: Axes | None, x: str, quantity: str, others: 
     chosen = table[table.quantity == quantity]
     seeds = chosen.seed.nunique()
     label = LABELS.get(quantity, quantity)
-    title = f"{label} by {x}, {seeds} seed{'s' * (seeds != 1)}"
+    title = f"{quantity.replace('_', ' ')} by {x}, {seeds} seed{'s' * (seeds != 1)}"
     ax = style.axes(ax, xlabel=x, ylabel=label, title=title)
     numeric = pd.api.types.is_numeric_dtype(chosen[x])
     places = {value: value if numeric else i for i, value in enumerate(chosen[x].unique())}
