@@ -262,7 +262,8 @@ class Exercise:
         wrong = next((step for step in steps if step.problem), None)
         if wrong:
             self._failed += not wrong.empty
-            print(f"Not yet: {wrong.problem}{'' if wrong.problem[-1] in '.?' else '.'}")
+            ended = "\n" in wrong.problem or wrong.problem[-1] in ".?"
+            print(f"Not yet: {wrong.problem}{'' if ended else '.'}")
             print(
                 f"This page goes on with the course's own {self.name}. "
                 "Change yours, then run both cells again."
