@@ -36,6 +36,12 @@ def test_every_equation_and_figure_has_a_notebook():
         assert set(ROWS.number[ROWS.kind == kind]) == set(read.number[read.kind == kind])
 
 
+def test_every_row_of_the_errata_is_in_its_chapter():
+    rows = ROWS[ROWS.kind == "errata row"]
+    assert set(rows.number) == {str(row) for row in range(1, 42)}
+    assert all("13_errata.ipynb" in names for names in rows.notebooks)
+
+
 def test_lines_are_those_of_the_definitions():
     for row in ROWS.drop_duplicates(["file", "name"]).itertuples():
         lines = (PACKAGE / row.file).read_text(encoding="utf-8").splitlines()
