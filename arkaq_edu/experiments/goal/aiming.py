@@ -26,6 +26,7 @@ from arkaq_edu.mdp import MDP, value_iteration
 
 Floats = NDArray[np.float64]
 
+_SENSING = Sensing.goal()
 _WIDEST = 1.0  # rad; farther to the side hardly a kick scores
 
 
@@ -61,7 +62,7 @@ def category(centers: ArrayLike, orientations: ArrayLike) -> NDArray[np.intp]:
     >>> category([[-0.5], [0.5]], [-1.0, -0.1, 0.1])
     array([0, 0, 1])
     """
-    seen = Sensing.goal().scale(np.asarray(orientations, dtype=float)[:, None])
+    seen = _SENSING.scale(np.asarray(orientations, dtype=float)[:, None])
     return np.abs(seen - np.ravel(centers)).argmin(axis=1)
 
 
@@ -99,7 +100,7 @@ def plan(
     """
     learning = learning or TrainingSettings.goal()
     k = len(np.ravel(centers))
-    sensing = Sensing.goal()
+    sensing = _SENSING
     view = ORIENTATIONS[np.abs(ORIENTATIONS) <= sensing.high[0] + sensing.B[0][TURN_RIGHT]]
     # A whole state may lie between two places of the grid, so add the centers.
     seen = np.append(view, sensing.unscale(centers))
@@ -189,7 +190,7 @@ def last_aims(centers: ArrayLike, actions: NDArray[np.intp], n: int, seed: int =
     >>> len(aims), bool(np.abs(aims).max() < 0.16)
     (50, True)
     """
-    sensing, rng = Sensing.goal(), np.random.default_rng(seed)
+    sensing, rng = _SENSING, np.random.default_rng(seed)
     moved = np.array(sensing.B[0])
     aims = np.linspace(-1, 1, n) * STARTS["near"].most
     for _ in range(PATIENCE):

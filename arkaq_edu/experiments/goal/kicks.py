@@ -180,7 +180,9 @@ def on_the_field(paths: Floats, distance: float, orientation: ArrayLike) -> Floa
     heading = -np.asarray(orientation, dtype=float)[..., None]
     c, s = np.cos(heading), np.sin(heading)
     ahead, left = paths[..., 0], paths[..., 1]
-    return np.stack([ahead * c - left * s - distance, ahead * s + left * c], axis=-1)
+    # All depths, then all places across: what follows reads one of them at a time.
+    planes = np.array([ahead * c - left * s - distance, ahead * s + left * c])
+    return np.moveaxis(planes, 0, -1)
 
 
 def is_goal(placed: Floats) -> NDArray[np.bool_]:
