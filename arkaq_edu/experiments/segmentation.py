@@ -163,8 +163,12 @@ def count_fact(n: int, vigilance: float) -> str:
     return f"{ours}, the thesis printed {around}"
 
 
-def partition_fact(network: EuclideanART | ART2A, patterns: ArrayLike) -> str:
+def partition_fact(
+    network: EuclideanART | ART2A, patterns: ArrayLike, *, printed: bool = True
+) -> str:
     """Say how many categories a network has, and how well they hold the patterns.
+
+    With `printed`, also what the thesis prints there.
 
     Examples
     --------
@@ -176,7 +180,7 @@ def partition_fact(network: EuclideanART | ART2A, patterns: ArrayLike) -> str:
     counted = f"{n} categor{'y' if n == 1 else 'ies'} at vigilance {at:g}"
     if isinstance(network, ART2A):
         counted += f", a cosine: {degrees(acos(at)):.1f}°"
-    elif at in THESIS_COUNTS:
+    elif printed and at in THESIS_COUNTS:
         counted = count_fact(n, at)
     covered = 100 * coverage(network, patterns)
     error = quantization_error(patterns, network.predict(patterns))

@@ -1,8 +1,10 @@
 """What the notebooks let a student move: sliders above a picture that follows them.
 
 Every explorer is an `Explorer`: plain controls, a plain function from their values to a `Scene`,
-and one canvas that draws any scene.
+and one canvas that draws any scene. `EXPLORERS` has them all by name.
 """
+
+from collections.abc import Callable
 
 from arkaq_edu.widgets.arkaq import sighting_explorer
 from arkaq_edu.widgets.art import letters_explorer, resonance_explorer
@@ -16,7 +18,26 @@ from arkaq_edu.widgets.mdp import planning_explorer, q_learning_explorer
 from arkaq_edu.widgets.pomdp import bowl_explorer, value_explorer
 from arkaq_edu.widgets.segmentation import vigilance_explorer
 
+#: Every explorer of the course by its short name, in the order of the chapters.
+EXPLORERS: dict[str, Callable[..., Explorer]] = {
+    "horizon": horizon_explorer,
+    "bandit": bandit_explorer,
+    "planning": planning_explorer,
+    "q-learning": q_learning_explorer,
+    "belief": belief_explorer,
+    "value": value_explorer,
+    "bowl": bowl_explorer,
+    "kalman": kalman_explorer,
+    "letters": letters_explorer,
+    "resonance": resonance_explorer,
+    "vigilance": vigilance_explorer,
+    "field": control_panel,
+    "sighting": sighting_explorer,
+    "scoring": scoring_explorer,
+}
+
 __all__ = [
+    "EXPLORERS",
     "Buttons",
     "CanvasView",
     "Drag",

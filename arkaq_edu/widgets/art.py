@@ -20,6 +20,12 @@ from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Te
 LEVELS = (0.75, 0.8, 0.85, 0.9, 0.95)
 #: Where the slider of the letters stops.
 VIGILANCES = tuple(round(0.05 * step, 2) for step in range(21))
+_TIPS = {
+    "c": "How much the learned pattern adds to the match r",
+    "d": "The output of the category that is tried",
+    "rho": "A match with a smaller norm than this is a reset",
+    "letters": "How much of a letter a template must share to hold it",
+}
 _FAR, _WIDE = 1.5, 1.85  # where the curves end, and the axis, which leaves room for words
 
 
@@ -46,9 +52,9 @@ def resonance_explorer() -> Explorer:
     """
     return Explorer(
         draw_surface,
-        c=slider("c", 0.1, 0.05, 0.5, 0.05, **sized("")),
-        d=slider("d", 0.9, 0.5, 0.95, 0.05, **sized("")),
-        vigilance=slider("vigilance", 0.95, 0.75, 0.99, 0.01, **sized("")),
+        c=slider("c", 0.1, 0.05, 0.5, 0.05, tooltip=_TIPS["c"], **sized("")),
+        d=slider("d", 0.9, 0.5, 0.95, 0.05, tooltip=_TIPS["d"], **sized("")),
+        vigilance=slider("vigilance", 0.95, 0.75, 0.99, 0.01, tooltip=_TIPS["rho"], **sized("")),
     )
 
 
@@ -138,7 +144,7 @@ def letters_explorer() -> Explorer:
     8 categories of 8 letters at vigilance 1
     """
     counts = {vigilance: art.learn_letters(vigilance).n_clusters_ for vigilance in VIGILANCES}
-    vigilance = slider("vigilance", 0.5, 0, 1, 0.05, **sized(""))
+    vigilance = slider("vigilance", 0.5, 0, 1, 0.05, tooltip=_TIPS["letters"], **sized(""))
     return Explorer(partial(draw_letters, counts), vigilance=vigilance)
 
 

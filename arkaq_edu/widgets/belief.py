@@ -17,7 +17,7 @@ from arkaq_edu.figures.drawing.style import probability
 from arkaq_edu.pomdp import POMDP, Trajectory, entropy, problem, successors
 from arkaq_edu.pomdp.simplex import CORNERS, TETRAHEDRON
 from arkaq_edu.pomdp.turns import WORLD, follow, possible
-from arkaq_edu.widgets.explorer import START_AGAIN, WRAP, Explorer, button, close_whole
+from arkaq_edu.widgets.explorer import START_AGAIN, WRAP, Explorer, button, close_whole, offer
 from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Points, Scene, Text, box
 
 #: The problems of the menu.
@@ -62,7 +62,12 @@ class Turns(ipywidgets.VBox):
         self.problems, self.seed = problems, seed
         self._shown = ""  # the problem whose buttons are shown
         label = {"description_width": "5em"}
-        self.menu = ipywidgets.Dropdown(options=list(problems), description="problem", style=label)
+        self.menu = ipywidgets.Dropdown(
+            options=list(problems),
+            description="problem",
+            style=label,
+            tooltip="Another problem: start again",
+        )
         again = button(START_AGAIN, lambda: self.set_trait("value", self.value[:1]))
         self.actions, self.observations = (ipywidgets.HBox(layout=WRAP) for _ in range(2))
         first = ipywidgets.HBox([self.menu, again], layout=WRAP)
@@ -102,12 +107,13 @@ class Turns(ipywidgets.VBox):
         }
         for row, offered in offers.items():
             for each in row.children[1:]:
-                each.disabled = each.description not in offered
+                offer(each, each.description in offered)
 
     def _fill(self, row: ipywidgets.HBox, label: str, names: Iterable[str]) -> None:
         for old in row.children:
             close_whole(old)
-        word = ipywidgets.Label(label, layout={"width": "5em", "justify_content": "flex-end"})
+        right = {"width": "5em", "justify_content": "flex-end"}
+        word = ipywidgets.Label(label, layout=right, tooltip="")
         row.children = [word, *(button(name, partial(self.press, name)) for name in names)]
 
 

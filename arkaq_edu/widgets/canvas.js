@@ -187,6 +187,9 @@ function fitted(panel, box) {
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowDown: [0, -1], ArrowUp: [0, 1] };
 
+// A page for a projector draws all larger: it sets this property.
+const scaleOf = (el) => Number(getComputedStyle(el).getPropertyValue("--arkaq-scale")) || 1;
+
 // Tells the kernel of drags and of the arrow keys, once a frame at most. While the kernel is busy
 // the manager keeps the newest message alone: so each holds all there is to know since the drag
 // began, and keys are counted, not sent.
@@ -202,7 +205,8 @@ function takeInput(model, canvas, panelAt) {
   };
   const pixel = (event) => {
     const { left, top } = canvas.getBoundingClientRect();
-    return [event.clientX - left, event.clientY - top];
+    const scale = scaleOf(canvas);
+    return [(event.clientX - left) / scale, (event.clientY - top) / scale];
   };
   const move = (event, phase) => {
     tell("drag", { ...drag.told, to: drag.back(...pixel(event)), phase });
@@ -240,6 +244,28 @@ function takeInput(model, canvas, panelAt) {
   canvas.classList.add("arkaq-draggable");
 }
 
+// What ipywidgets leaves undone around the canvas: its sliders have no name and say a rounded
+// value, and a key pressed on them is also a shortcut of JupyterLab.
+function befriend(root) {
+  root.dataset.lmSuppressShortcuts = "true";
+  const tell = () => {
+    for (const row of root.querySelectorAll(".widget-hslider, .widget-play")) {
+      const handle = row.querySelector("[role=slider]");
+      handle?.setAttribute("aria-label", row.querySelector(".widget-label").textContent);
+      handle?.setAttribute("aria-valuetext", row.querySelector(".widget-readout").textContent);
+      const tip = row.querySelector("[title]")?.title;
+      if (tip) handle?.setAttribute("aria-description", tip);
+    }
+    for (const button of root.querySelectorAll("button")) {
+      button.setAttribute("aria-disabled", button.classList.contains("arkaq-off"));
+    }
+  };
+  const watch = new MutationObserver(tell);
+  watch.observe(root, { subtree: true, childList: true, characterData: true, attributeFilter: ["class"] });
+  tell();
+  return watch;
+}
+
 function render({ model, el }) {
   const fact = document.createElement("div");
   fact.className = "arkaq-fact";
@@ -259,19 +285,20 @@ function render({ model, el }) {
 
   function paint() {
     const scene = model.get("scene");
-    const width = Math.min(Math.floor(el.clientWidth), 860);
+    const scale = scaleOf(el);
+    const width = Math.min(Math.floor(el.clientWidth / scale), 860);
     if (!width || !scene.panels) return;
     const bytes = model.get("numbers");
     const numbers = new Float32Array(
       bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength),
     );
-    const ratio = window.devicePixelRatio;
+    const ratio = window.devicePixelRatio * scale;
     const [boxes, height] = arrange(scene.panels, width);
     const size = [Math.round(width * ratio), Math.round(height * ratio)];
     // Giving a canvas a size, even the one it has, costs a new buffer.
     if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
-    canvas.style.width = `${width}px`;
-    canvas.style.height = `${height}px`;
+    canvas.style.width = `${width * scale}px`;
+    canvas.style.height = `${height * scale}px`;
     const ctx = canvas.getContext("2d");
     ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
     ctx.fillStyle = "white";
@@ -298,12 +325,18 @@ function render({ model, el }) {
     screen.addEventListener("change", watchScreen);
     repaint();
   };
-  const room = new ResizeObserver(repaint);
+  let friend = null; // known once the canvas stands in the page, among the controls
+  const room = new ResizeObserver(() => {
+    const root = el.closest(".arkaq-explorer");
+    if (root) friend ??= befriend(root);
+    repaint();
+  });
   room.observe(el);
   model.on("change:scene change:numbers", repaint);
   watchScreen();
   return () => {
     room.disconnect();
+    friend?.disconnect();
     screen.removeEventListener("change", watchScreen);
     model.off("change:scene change:numbers", repaint);
     cancelAnimationFrame(frame);

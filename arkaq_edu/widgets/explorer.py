@@ -20,8 +20,11 @@ from arkaq_edu.widgets.scene import PNG_WIDTH, Scene
 
 #: The layout of a row of widgets that goes on below where the page is narrow.
 WRAP = {"flex_flow": "row wrap"}
+#: What the picture of an explorer says where no kernel runs.
+STILL = "a still: run this cell to get the sliders"
 #: The name of the button that forgets all presses.
 START_AGAIN = "start again"
+_OFF = "arkaq-off"  # the class of a button that cannot be pressed now
 #: The explorers that the last run of each notebook cell made: the run, and what it made.
 _MADE: dict[str, tuple[str, WeakSet[Explorer]]] = {}
 
@@ -67,17 +70,42 @@ def stops(
     )
 
 
-def button(name: str, act: Callable[[], None]) -> ipywidgets.Button:
+def button(name: str, act: Callable[[], None], tooltip: str = "") -> ipywidgets.Button:
     """Return a button, as wide as its name, that calls `act` when it is clicked.
+
+    While it is not offered (see `offer`), a click does nothing.
 
     Examples
     --------
     >>> button("hello", lambda: print("hello yourself")).click()
     hello yourself
     """
-    made = ipywidgets.Button(description=name, layout={"width": "auto"})
-    made.on_click(lambda _: act())
+    made = ipywidgets.Button(description=name, layout={"width": "auto"}, tooltip=tooltip)
+    made.on_click(lambda _: act() if is_offered(made) else None)
     return made
+
+
+def offer(button: ipywidgets.Button, offered: bool) -> None:
+    """Let a button be pressed or not. Unlike a disabled one, it keeps the focus.
+
+    Examples
+    --------
+    >>> hello = button("hello", lambda: print("hello yourself"))
+    >>> offer(hello, False)
+    >>> hello.click()
+    """
+    (button.remove_class if offered else button.add_class)(_OFF)
+
+
+def is_offered(button: ipywidgets.Button) -> bool:
+    """Return whether a button can be pressed.
+
+    Examples
+    --------
+    >>> is_offered(button("hello", print))
+    True
+    """
+    return _OFF not in button._dom_classes
 
 
 def close_whole(widget: ipywidgets.Widget) -> None:
@@ -324,8 +352,9 @@ class Explorer(ipywidgets.VBox):
         self.controls = controls
         self.error: Exception | None = None
         self._draw = draw
-        self._message = ipywidgets.HTML()
+        self._message = ipywidgets.HTML(tooltip="")
         super().__init__([*controls.values(), self.view, self._message])
+        self.add_class("arkaq-explorer")
         self._redraw()
         for control in controls.values():
             control.observe(self._moved, names="value")
@@ -355,7 +384,7 @@ class Explorer(ipywidgets.VBox):
 
     def _repr_mimebundle_(self, **kwargs: Any) -> tuple[dict[str, Any], dict[str, Any]]:
         bundle = super()._repr_mimebundle_(**kwargs)
-        bundle |= {"text/plain": self.drawn.fact, "image/png": self.drawn.png()}
+        bundle |= {"text/plain": self.drawn.fact, "image/png": self.drawn.png(STILL)}
         return bundle, {"image/png": {"width": PNG_WIDTH}}
 
 

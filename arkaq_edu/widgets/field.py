@@ -10,8 +10,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import partial
+from typing import Any
 
 import ipywidgets
+import traitlets
 from scipy.ndimage import uniform_filter1d
 
 from arkaq_edu.field import motion
@@ -55,6 +57,11 @@ class Presses(Buttons):
     def __init__(self, sliders: Sequence[ipywidgets.DOMWidget]) -> None:
         self._sliders = tuple(sliders)
         super().__init__(BUTTONS)
+
+    @traitlets.validate("value")
+    def _known(self, proposal: Any) -> tuple[Any, ...]:
+        # The link to a setting holds each press as a plain list.
+        return tuple(Press(*press) for press in super()._known(proposal))
 
     def record(self, name: str) -> Press:
         """Return the press of a button, with the sliders as they are now."""
@@ -164,10 +171,14 @@ def control_panel(seed: int = 0) -> Explorer:
     'next +90 mm, +0.11 rad'
     """
     left, right = (
-        slider(f"{side} stride (mm)", 100, -MAX_STRIDE, MAX_STRIDE, 10, **sized("11em"))
+        slider(
+            f"{side} stride (mm)", 100, -MAX_STRIDE, MAX_STRIDE, 10,
+            tooltip=f"How far the legs on the {side} go in the next step", **sized("11em"),
+        )
         for side in ("left", "right")
-    )
-    head = slider("head to the left (rad)", 0.0, -1.5, 1.5, 0.1, **sized("11em"))
+    )  # fmt: skip
+    where = "Where the head points; positive is to the left"
+    head = slider("head to the left (rad)", 0.0, -1.5, 1.5, 0.1, tooltip=where, **sized("11em"))
     presses = Presses([left, right, head])
     return Explorer(partial(draw, Drive(seed)), left=left, right=right, head=head, presses=presses)
 

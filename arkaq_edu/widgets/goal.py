@@ -71,10 +71,19 @@ def scoring_explorer(patterns: ArrayLike | None = None) -> Explorer:
     near = int(STARTS["near"].distance)
     return Explorer(
         partial(draw, stream),
-        distance=slider("distance (mm)", near, 1000, 3000, 50, **wide),
-        spread=slider("kick's spread", 1.0, 0.0, 2.0, 0.1, readout_format=".1f", **wide),
-        vigilance=stops("vigilance", VIGILANCES, 0.06, **wide),
-    )
+        distance=slider(
+            "distance (mm)", near, 1000, 3000, 50,
+            tooltip="From the robot to the goal line", **wide,
+        ),
+        spread=slider(
+            "kick's spread", 1.0, 0.0, 2.0, 0.1, readout_format=".1f",
+            tooltip="1: as the real robot kicks; 0: every kick is the same", **wide,
+        ),
+        vigilance=stops(
+            "vigilance", VIGILANCES, 0.06,
+            tooltip="Half the width of a state: the larger it is, the fewer states", **wide,
+        ),
+    )  # fmt: skip
 
 
 def draw(

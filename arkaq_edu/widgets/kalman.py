@@ -45,18 +45,24 @@ def kalman_explorer() -> Explorer:
     """
     return Explorer(
         partial(draw, simulated_walk()),
-        r=_powers("sigma of R (mm)", 10.0, SIGHTING_NOISE, ".0f"),
-        q=_powers("sigma of Q (mm)", 25.0, STEP_NOISE, ".1f"),
-        dropout=slider("dropout", 0.0, 0, 0.9, 0.1, readout_format=".0%"),
-    )
+        r=_powers("sigma of R (mm)", 10.0, SIGHTING_NOISE, ".0f", "sighting"),
+        q=_powers("sigma of Q (mm)", 25.0, STEP_NOISE, ".1f", "footstep"),
+        dropout=slider(
+            "dropout", 0.0, 0, 0.9, 0.1,
+            readout_format=".0%", tooltip="The share of sightings that are missing",
+        ),
+    )  # fmt: skip
 
 
-def _powers(name: str, value: float, true: float, readout: str) -> ipywidgets.FloatLogSlider:
+def _powers(
+    name: str, value: float, true: float, readout: str, what: str
+) -> ipywidgets.FloatLogSlider:
     # The true value is a stop, too: a browser moves a value between two stops.
     low, high = np.log10([true / 10, true * 10])
     return ipywidgets.FloatLogSlider(
-        value, min=low, max=high, step=0.05, description=name, readout_format=readout, **sized()
-    )
+        value, min=low, max=high, step=0.05, description=name, readout_format=readout,
+        tooltip=f"The standard deviation of a {what} that the filter assumes", **sized(),
+    )  # fmt: skip
 
 
 def draw(walk: Walk, r: float, q: float, dropout: float) -> Scene:

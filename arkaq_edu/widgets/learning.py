@@ -57,9 +57,12 @@ def horizon_explorer() -> Explorer:
     """
     return Explorer(
         draw_models,
-        h=slider("horizon h (steps)", 5, 1, LONGEST),
-        gamma=slider("discount gamma", 0.9, GAMMAS[0], GAMMAS[-1], 0.01),
-    )
+        h=slider("horizon h (steps)", 5, 1, LONGEST, tooltip="How many rewards are added"),
+        gamma=slider(
+            "discount gamma", 0.9, GAMMAS[0], GAMMAS[-1], 0.01,
+            tooltip="What a reward is worth one step later",
+        ),
+    )  # fmt: skip
 
 
 def draw_models(h: int, gamma: float) -> Scene:
@@ -159,9 +162,12 @@ def bandit_explorer() -> Explorer:
     >>> explorer.drawn.fact.split(",")[0]
     '13 pulls'
     """
-    machines = slider("machines no.", 3, 1, 30)
+    machines = slider("machines no.", 3, 1, 30, tooltip="Another number: other machines")
     pulls = Buttons(MACHINES, value=OPENING)
-    reveal = ipywidgets.Checkbox(False, description="show their chances", indent=False)
+    reveal = ipywidgets.Checkbox(
+        False, description="show their chances", indent=False,
+        tooltip="Show how often each machine pays, and count regret without luck",
+    )  # fmt: skip
 
     def new_game(_: Any) -> None:
         pulls.value, reveal.value = (), False

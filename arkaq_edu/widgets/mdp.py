@@ -18,6 +18,14 @@ RATES: tuple[float | str, ...] = ("1/visits", 0.05, 0.1, 0.2, 0.5, 1.0)
 TEMPERATURES = (0.1, 1.0, 3.0, 10.0, 30.0, 100.0, 1000.0)
 
 _LOOK = sized("7em")
+_TIPS = {
+    "n": "How often every value was computed anew",
+    "gamma": "What a reward is worth one step later",
+    "slip": "The probability that a step goes to one side instead",
+    "steps": "How many steps each robot has made",
+    "alpha": "The learning rate: how far a step moves Q",
+    "T": "The temperature of the choice: high is random, low is greedy",
+}
 _ERRORS = (0.01, 10_000.0)
 
 
@@ -43,9 +51,9 @@ def planning_explorer() -> Explorer:
     """
     return Explorer(
         draw_sweep,
-        n=slider("sweeps", 0, 0, SWEEPS, **_LOOK),
-        gamma=slider("gamma", 0.95, 0.5, 0.95, 0.05, **_LOOK),
-        slip=slider("slip", 0.1, 0, 0.5, 0.05, **_LOOK),
+        n=slider("sweeps", 0, 0, SWEEPS, tooltip=_TIPS["n"], **_LOOK),
+        gamma=slider("gamma", 0.95, 0.5, 0.95, 0.05, tooltip=_TIPS["gamma"], **_LOOK),
+        slip=slider("slip", 0.1, 0, 0.5, 0.05, tooltip=_TIPS["slip"], **_LOOK),
     )
 
 
@@ -120,9 +128,9 @@ def q_learning_explorer() -> Explorer:
     """
     return Explorer(
         draw_life,
-        steps=stops("steps", STEPS, 5000, "{:,}", **_LOOK),
-        alpha=stops("alpha", RATES, 0.1, "{}", **_LOOK),
-        temperature=stops("temperature", TEMPERATURES, 10.0, **_LOOK),
+        steps=stops("steps", STEPS, 5000, "{:,}", tooltip=_TIPS["steps"], **_LOOK),
+        alpha=stops("alpha", RATES, 0.1, "{}", tooltip=_TIPS["alpha"], **_LOOK),
+        temperature=stops("temperature", TEMPERATURES, 10.0, tooltip=_TIPS["T"], **_LOOK),
     )
 
 

@@ -51,12 +51,20 @@ def value_explorer() -> Explorer:
     >>> explorer
     1 step to go, p(s1) = 0.25: worth 1.125, begin with a2; 2 of 2 plans are needed
     """
-    belief = slider("belief p(s1)", 0.25, 0, 1, 0.01)
+    belief = slider(
+        "belief p(s1)",
+        0.25,
+        0,
+        1,
+        0.01,
+        tooltip="The probability of s1; the picture can be dragged",
+    )
     return Explorer(draw_value, horizon=_horizon(3), belief=Drag(belief))
 
 
 def _horizon(value: int) -> ipywidgets.DOMWidget:
-    return slider("steps to go", value, HORIZONS[0], HORIZONS[-1])
+    told = "The horizon: how many actions are left"
+    return slider("steps to go", value, HORIZONS[0], HORIZONS[-1], tooltip=told)
 
 
 def _steps(n: int) -> str:
@@ -175,8 +183,14 @@ def bowl_explorer() -> Explorer:
     >>> explorer
     2 steps to go: 7 planes, worth 1.80 in the middle, 5.00 at the corners; seen from 46°, 38° up
     """
-    azimuth = slider("turn (degrees)", 46, -180, 180, 2.0, readout_format=".0f")
-    elevation = slider("eye (degrees up)", 38, 0, 90, 2.0, readout_format=".0f")
+    azimuth = slider(
+        "turn (degrees)", 46, -180, 180, 2.0,
+        readout_format=".0f", tooltip="Where you stand; the picture can be dragged",
+    )  # fmt: skip
+    elevation = slider(
+        "eye (degrees up)", 38, 0, 90, 2.0,
+        readout_format=".0f", tooltip="How high you stand; the picture can be dragged",
+    )  # fmt: skip
     view = Drag(azimuth, elevation, gain=(60, -60))
     return Explorer(draw_bowl, horizon=_horizon(2), view=view)
 

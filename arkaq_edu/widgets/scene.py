@@ -339,9 +339,16 @@ class Scene:
             panels.append({**axes, "xticks": x, "yticks": y, "layers": layers})
         return {"fact": self.fact, "panels": panels}, np.concatenate(parts).tobytes()
 
-    def png(self) -> bytes:
-        """Return the picture as matplotlib draws it, with two pixels for each of the page."""
-        figure = Figure(figsize=(PNG_WIDTH / 96, 4.0), dpi=192, layout="constrained")
+    def png(self, note: str = "") -> bytes:
+        """Return the picture as matplotlib draws it, with two pixels for each of the page.
+
+        A `note` stands below the panels.
+        """
+        figure = Figure(
+            figsize=(PNG_WIDTH / 96, 4.25 if note else 4.0), dpi=192, layout="constrained"
+        )
+        if note:
+            figure.supxlabel(f"▶  {note}", x=0.99, ha="right", fontsize="small", color=style.OURS)
         widths = [panel.width for panel in self.panels]
         row = figure.subplots(1, len(self.panels), width_ratios=widths, squeeze=False)[0]
         for panel, ax in zip(self.panels, row, strict=True):

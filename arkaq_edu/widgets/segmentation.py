@@ -11,7 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu import _checks
+from arkaq_edu.art import ART2A, EuclideanART
+from arkaq_edu.art.geometry import six_colors, voronoi_cells
 from arkaq_edu.experiments import segmentation
+from arkaq_edu.experiments.patterns import Patterns
 from arkaq_edu.experiments.segmentation import LEARNING_RATE, METHODS, ORDERS, THESIS_COUNTS
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.widgets.explorer import WRAP, Explorer, sized, slider
@@ -23,15 +26,16 @@ COSINES = tuple(round(0.5 + 0.01 * step, 2) for step in range(50))
 
 
 def vigilance_explorer(
-    patterns: ArrayLike | None = None, learning_rate: float = LEARNING_RATE
+    patterns: ArrayLike | Patterns | None = None, learning_rate: float = LEARNING_RATE
 ) -> Explorer:
     """Return controls of what decides a partition, above the map of categories and the counts.
 
     Parameters
     ----------
-    patterns : array_like, shape (n, 2), optional
+    patterns : array_like, shape (n, 2), or Patterns, optional
         Scaled patterns (distance, orientation) in the order in which they were recorded; the
-        course's recorded stream by default.
+        course's recorded stream by default. `arkaq_edu.experiments.patterns.read_patterns` reads
+        your own from a csv, with axes of their own.
     learning_rate : float in (0, 1]
         The first value of the update factor eta. The curve of counts is drawn for this value.
 
@@ -60,7 +64,10 @@ def vigilance_explorer(
     >>> explorer
     3 categories at vigilance 0.05, the thesis printed 825; coverage 100.0 %, error 0.000
     """
-    if patterns is None:
+    own = None
+    if isinstance(patterns, Patterns):
+        own, patterns = patterns, patterns.scaled
+    elif patterns is None:
         patterns = segmentation.recorded_patterns()
     patterns = _checks.array("patterns", patterns, (None, 2))
     rate = _checks.number("learning_rate", learning_rate, 0, 1, open_low=True)
@@ -69,7 +76,7 @@ def vigilance_explorer(
         method: {v: METHODS[method](v, rate).fit(patterns).n_clusters_ for v in stops}
         for method, stops in (("Euclidean", VIGILANCES), ("angular", COSINES))
     }
-    explorer = Explorer(partial(draw, patterns, references), **controls)
+    explorer = Explorer(partial(draw, patterns, references, own=own), **controls)
     rows = [("method", "vigilance", "cosine"), ("order", "eta", "n")]
     explorer.children = [
         *(ipywidgets.HBox([controls[name] for name in row], layout=WRAP) for row in rows),
@@ -82,9 +89,18 @@ def _controls(n: int, learning_rate: float) -> dict[str, Any]:
     narrow, middle, wide = (sized("", width) for width in (17, 21, 38))
     few = max(1, n // 13)  # pieces of 500, if it is the recorded stream
     ends, cosines = (VIGILANCES[0], VIGILANCES[-1]), (COSINES[0], COSINES[-1])
-    method = ipywidgets.Dropdown(options=list(METHODS), description="method", **narrow)
-    distance = slider("vigilance", 0.15, *ends, 0.005, readout_format=".3f", **wide)
-    cosine = slider("vigilance", 0.95, *cosines, 0.01, **wide)
+    method = ipywidgets.Dropdown(
+        options=list(METHODS), description="method",
+        tooltip="What vigilance compares: distances, or angles", **narrow,
+    )  # fmt: skip
+    distance = slider(
+        "vigilance", 0.15, *ends, 0.005, readout_format=".3f",
+        tooltip="A pattern farther than this from every center founds a category", **wide,
+    )  # fmt: skip
+    cosine = slider(
+        "vigilance", 0.95, *cosines, 0.01,
+        tooltip="A pattern with a smaller cosine to every template founds a category", **wide,
+    )  # fmt: skip
     cosine.layout.display = "none"
 
     def show_its_vigilance(change: Any) -> None:
@@ -96,10 +112,19 @@ def _controls(n: int, learning_rate: float) -> dict[str, Any]:
         "method": method,
         "vigilance": distance,
         "cosine": cosine,
-        "order": ipywidgets.Dropdown(options=ORDERS, description="order", **narrow),
-        "eta": slider("eta", learning_rate, 0.05, 1.0, 0.05, **middle),
-        "n": slider("patterns", n, few, n, few, **middle),
-    }
+        "order": ipywidgets.Dropdown(
+            options=ORDERS, description="order",
+            tooltip="In which order the patterns are learned", **narrow,
+        ),
+        "eta": slider(
+            "eta", learning_rate, 0.05, 1.0, 0.05,
+            tooltip="How far a center moves to a pattern that it holds", **middle,
+        ),
+        "n": slider(
+            "patterns", n, few, n, few,
+            tooltip="How many patterns are learned, the first ones recorded", **middle,
+        ),
+    }  # fmt: skip
 
 
 def draw(
@@ -111,6 +136,7 @@ def draw(
     order: str = ORDERS[0],
     eta: float = LEARNING_RATE,
     n: int | None = None,
+    own: Patterns | None = None,
 ) -> Scene:
     """Return the picture for one setting: the map on the left, the counts on the right.
 
@@ -130,19 +156,68 @@ def draw(
         Update factor.
     n : int, optional
         Number of patterns that are learned, the first ones recorded; all by default.
+    own : Patterns, optional
+        The names and the units of the axes, where the patterns are not the robot's.
 
     Returns
     -------
     Scene
     """
+    network = _learn(patterns, method, vigilance, cosine, order, eta, n)
+    at, found = network.vigilance, network.cluster_centers_
+    counts, n_found = references.get(method, {}), len(found)
+    if method == "angular":
+        curve = _cosine_curve(counts, at, n_found)
+    elif own:
+        curve = _own_curve(counts, at, n_found)
+    else:
+        curve = _distance_curve(counts, at, n_found)
+    fact = segmentation.partition_fact(network, patterns, printed=own is None)
+    return Scene(fact, [_own_map(found, own) if own else _map(found), curve])
+
+
+def centers(
+    patterns: ArrayLike,
+    method: str = "Euclidean",
+    vigilance: float = 0.15,
+    cosine: float = 0.95,
+    order: str = ORDERS[0],
+    eta: float = LEARNING_RATE,
+    n: int | None = None,
+) -> NDArray[np.float64]:
+    """Return the centers of the partition that `draw` shows, shape (k, 2), scaled.
+
+    Examples
+    --------
+    >>> centers([[0.0, 0.0], [1.0, 1.0]]).tolist()
+    [[0.0, 0.0], [1.0, 1.0]]
+    """
+    return _learn(patterns, method, vigilance, cosine, order, eta, n).cluster_centers_
+
+
+def _learn(
+    patterns: ArrayLike,
+    method: str,
+    vigilance: float,
+    cosine: float,
+    order: str,
+    eta: float,
+    n: int | None,
+) -> EuclideanART | ART2A:
     # A slider's steps add up to 0.15000000000000002.
     at = round(cosine if method == "angular" else vigilance, 3)
     learned = segmentation.in_order(np.asarray(patterns)[:n], order)
-    network = METHODS[method](at, round(eta, 3)).fit(learned)
-    found = network.cluster_centers_
-    curve = _cosine_curve if method == "angular" else _distance_curve
-    panels = [_map(found), curve(references.get(method, {}), at, len(found))]
-    return Scene(segmentation.partition_fact(network, patterns), panels)
+    return METHODS[method](at, round(eta, 3)).fit(learned)
+
+
+def _own_map(found: NDArray[np.float64], own: Patterns) -> Panel:
+    polygons, pairs = voronoi_cells(found)
+    colors = six_colors(len(polygons), pairs)
+    (left, bottom), (right, top) = own.low, own.high
+    x, y = own.unscale(found).T
+    dots = Points(x, y, radius=style.dot_radius(len(found)) / 0.75)
+    cells = Cells([own.unscale(cell) for cell in polygons], colors, (left, right, bottom, top))
+    return Panel(*own.names, (left, right), (bottom, top), [cells, dots], width=1.45)
 
 
 def _map(found: NDArray[np.float64]) -> Panel:
@@ -168,6 +243,18 @@ def _distance_curve(counts: Mapping[float, int], vigilance: float, n: int) -> Pa
     return Panel(
         "vigilance (a distance)", "categories", (0.022, 0.22), (15, 5000), layers, log="xy",
         xticks=[0.025, 0.05, 0.1, 0.2], yticks=[30, 100, 300, 1000, 3000],
+    )  # fmt: skip
+
+
+def _own_curve(counts: Mapping[float, int], vigilance: float, n: int) -> Panel:
+    top = 1.6 * max(*counts.values(), n)
+    layers = [
+        *_counts(counts, vigilance, n, 1),
+        *_key((0.065, 0.075), 0.079, 0.8 * top, 0.62 * top),
+    ]
+    return Panel(
+        "vigilance (a distance)", "categories", (0.022, 0.22), (1, top), layers, log="x",
+        xticks=[0.025, 0.05, 0.1, 0.2],
     )  # fmt: skip
 
 

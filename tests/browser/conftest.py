@@ -13,7 +13,9 @@ from pathlib import Path
 from urllib.error import URLError
 from urllib.request import urlopen
 
+import nbformat
 import pytest
+from nbformat.v4 import new_code_cell, new_notebook
 
 NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "chrome"))), None)
@@ -38,11 +40,32 @@ def pytest_collection_modifyitems(items):
 
 
 @pytest.fixture(scope="session")
-def lab(tmp_path_factory):
+def course(tmp_path_factory):
+    """A folder with a copy of the notebooks."""
+    folder = tmp_path_factory.mktemp("lab") / "course"
+    shutil.copytree(NOTEBOOKS, folder, ignore=shutil.ignore_patterns(".*", "__pycache__"))
+    return folder
+
+
+@pytest.fixture
+def open_cells(course, open_notebook):
+    """A function that opens a notebook with these cells of code, runs it, returns the page."""
+
+    def open_(*cells):
+        made = new_notebook(
+            cells=[new_code_cell(code) for code in cells],
+            metadata={"kernelspec": {"display_name": "Python 3", "name": "python3"}},
+        )
+        nbformat.write(made, course / "cells.ipynb")
+        return open_notebook("cells.ipynb")
+
+    return open_
+
+
+@pytest.fixture(scope="session")
+def lab(course):
     """The address of a JupyterLab that knows nothing of this user's files and settings."""
-    home = tmp_path_factory.mktemp("lab")
-    course = home / "course"
-    shutil.copytree(NOTEBOOKS, course, ignore=shutil.ignore_patterns(".*", "__pycache__"))
+    home = course.parent
     command = [
         sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root",
         f"--ServerApp.root_dir={course}",
