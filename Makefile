@@ -25,7 +25,7 @@ export UV_HTTP_RETRIES := 10
 export UV_HTTP_TIMEOUT := 120
 
 .PHONY: help install lab author slides grading student teaching test test-lowest test-newest \
-	soak fuzz check reproduce bench guard notebooks lock wheels
+	soak fuzz check reproduce bench guard latency visits notebooks lock wheels
 
 help:
 	@echo 'make lab        open the course in JupyterLab, in a copy of your own (arkaq-course)'
@@ -35,6 +35,8 @@ help:
 	@echo 'make reproduce  run the experiments of the thesis and write the report'
 	@echo 'make bench      measure speed against other libraries; make bench ROOM=kalman for one'
 	@echo 'make guard      check in a few seconds that nothing has become twice as slow'
+	@echo 'make latency    measure in Chromium how fast every picture follows its slider'
+	@echo 'make visits     visit the page of `arkaq explore` fifty times in Chromium'
 	@echo 'make notebooks  run the notebooks and store what they show'
 	@echo 'make install    only make $(VENV), as each of the above does first'
 	@echo 'make lock       resolve requirements.lock anew from pyproject.toml'
@@ -106,6 +108,15 @@ $(BENCH)/ready: $(BIN)/uv pyproject.toml
 
 guard: $(READY)
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks.guard
+
+latency: $(READY)
+	$(BIN)/python -m pytest tests/browser/latency.py -q
+
+visits: $(BIN)/voila
+	$(BIN)/python -m pytest tests/browser/visits.py -q
+
+$(BIN)/voila: $(READY)
+	$(BIN)/python -m pip install --quiet voila
 
 notebooks: $(READY)
 	$(BIN)/python notebooks/store.py

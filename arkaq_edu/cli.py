@@ -79,6 +79,41 @@ def lab(folder: Path, copy_only: bool, no_browser: bool) -> None:
         _start_jupyterlab(folder / "notebooks", no_browser)
 
 
+@main.command()
+@click.argument("name", default="vigilance")
+@click.option(
+    "--patterns",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="Your own patterns for the vigilance explorer: a csv with two columns of numbers.",
+)
+@click.option("--ip", default="127.0.0.1", show_default=True, help="The address to listen on.")
+@click.option("--port", type=click.IntRange(1, 65535), default=8866, show_default=True)
+@click.option("--no-browser", is_flag=True, help="Start the page without a browser.")
+def explore(name: str, patterns: Path | None, ip: str, port: int, no_browser: bool) -> None:
+    """Open an explorer on a page of its own.
+
+    It is made for a lecture: large type, no code. NAME is vigilance (the default) or any other
+    explorer; the page has links to all. It needs Voila: pip install "arkaq-edu[explore]".
+
+    The address in the browser always names the setting that is shown: keep it to come back to the
+    same picture. In the vigilance explorer you can open a csv of your own patterns (two columns of
+    numbers), or drop it on the page, and download the centers.
+
+    Only this computer can open the page, unless you say another --ip. Then anyone who reaches that
+    address can, without a password.
+    """
+    from arkaq_edu.experiments.patterns import read_patterns
+    from arkaq_edu.widgets import EXPLORERS
+
+    if name not in EXPLORERS:
+        raise click.BadParameter(f"must be one of {', '.join(EXPLORERS)}, got {name!r}")
+    if patterns is not None:
+        if name != "vigilance":
+            raise click.UsageError("--patterns applies only to vigilance")
+        read_patterns(patterns.read_text(encoding="utf-8-sig"))  # refused here, not in the page
+    _start_voila(name, patterns and patterns.resolve(), ip, port, no_browser)
+
+
 _seed = click.option("--seed", type=click.IntRange(0), default=0, show_default=True)
 _TASKS = ("approach", "goal")
 _goal_distance = click.option(
@@ -347,6 +382,39 @@ def _start_jupyterlab(folder: Path, no_browser: bool) -> None:
     if no_browser:
         options.append("--no-browser")
     jupyterlab(options)
+
+
+def _start_voila(name: str, patterns: Path | None, ip: str, port: int, no_browser: bool) -> None:
+    import tempfile
+
+    import nbformat
+
+    try:
+        from voila.app import main as voila
+    except ImportError:
+        words = 'this page needs Voila, which is not installed: pip install "arkaq-edu[explore]"'
+        raise click.ClickException(words) from None
+    code = (
+        f"from arkaq_edu.widgets.page import visit\nvisit({name!r}, {patterns and str(patterns)!r})"
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        page = Path(folder) / "explore.ipynb"
+        nbformat.write(nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(code)]), page)
+        options = [
+            str(page),
+            f"--Voila.ip={ip}",
+            f"--port={port}",
+            "--show_tracebacks=True",
+            # Voila's own pages cannot send the token that this check wants when they are closed,
+            # and so leave their kernels behind. What it guards is bound to a kernel's secret id.
+            "--Voila.tornado_settings={'disable_check_xsrf': True}",
+            # Where a page vanishes without a word (a crash, a cut cable) its kernel goes later.
+            "--MappingKernelManager.cull_idle_timeout=120",
+            "--MappingKernelManager.cull_interval=60",
+        ]
+        if no_browser:
+            options.append("--no-browser")
+        voila(options)
 
 
 if __name__ == "__main__":
