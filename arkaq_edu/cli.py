@@ -25,9 +25,9 @@ class OneLineErrors(click.Group):
     Examples
     --------
     >>> from click.testing import CliRunner
-    >>> answer = CliRunner().invoke(main, ["dance"])
+    >>> answer = CliRunner().invoke(main, ["juggle"])
     >>> answer.exit_code, answer.output
-    (2, "arkaq: error: No such command 'dance'.\\n")
+    (2, "arkaq: error: No such command 'juggle'.\\n")
     """
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
