@@ -254,8 +254,10 @@ def notebooks() -> dict[str, tuple[set[tuple[str, str]], set[str]]]:
         called = set(re.findall(r"[A-Za-z_]\w+", words["code"]))
         drawn = re.findall(r'(?:draw\(|figure_)"?(\d+)[._](\d+)', words["code"])
         named = places("\n".join(words.values())) + [("figure", f"{a}.{b}") for a, b in drawn]
-        rows = re.findall(r"\*\*Row (\d+)", words["markdown"])
-        found[path.name] = set(named) | {("errata row", row) for row in rows}, called
+        if "errata" in path.name:  # its rows begin with "**7. " or "**22 to 25. "
+            heads = re.findall(r"\*\*(\d+(?: to \d+)?)\. ?", words["markdown"])
+            named += places(f"errata rows {', '.join(heads)}")
+        found[path.name] = set(named), called
     return found
 
 
