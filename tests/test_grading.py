@@ -5,6 +5,7 @@ nbgrader is not part of a student's environment: `make grading` runs this in one
 
 import ast
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -30,12 +31,15 @@ HALF = (
     "def {name}({arguments}, _calls=[0]):\n"
     "    _calls[0] += 1\n"
     "    right = exercises.{name}({arguments})\n"
-    "    return right if _calls[0] % 4 else np.zeros_like(right)\n"
+    "    return right if _calls[0] % 3 else np.zeros_like(right)\n"
 )
-# Right once in four would earn nothing, and an answer that depends on the number of the call is
-# refused where chance is judged: these are right in part, as a student's would be.
+# An answer that depends on the number of the call is refused where chance is judged, and earns
+# nothing where each of several results is judged whole: these are right in part, as a student's.
 HALF_RIGHT = {
     "epsilon_greedy": "def epsilon_greedy(means, epsilon, rng):\n    return means.argmax()\n",
+    "state_bounds": (
+        "def state_bounds(vigilance, width):\n    return int(width / (2 * vigilance)) + 1, 99\n"
+    ),
     "rate": "def rate(n):\n    return 0.1\n",
     "present": (
         "def present(pattern, centers, vigilance, eta):\n    return np.vstack([centers, pattern])\n"
@@ -70,6 +74,8 @@ def answered(kind, master):
         return master
     if kind == "wrong":
         return before + WRONG.format(**names)
+    if not function.args.args:  # a judgment is right or wrong
+        return master
     return before + HALF_RIGHT.get(function.name, HALF.format(**names))
 
 
@@ -114,9 +120,22 @@ def test_blank_and_wrong_earn_nothing_right_all_and_half_right_something(course,
         assert [earned for earned, _ in each[kind].values()] == [
             share * most for _, most in each[kind].values()
         ]
-    assert all(0 < earned < most for earned, most in each["half"].values()), each["half"]
+    whole = judgments(course, chapter)
+    for name, (earned, most) in each["half"].items():
+        assert earned == most if name in whole else 0 < earned < most, (name, earned, most)
     feedback = course / "feedback" / "half" / chapter / f"{chapter}.html"
     assert "Not yet: " in feedback.read_text("utf-8")
+
+
+def judgments(course, chapter):
+    """The graded cells of the exercises that are right or wrong, and nothing between."""
+    page = nbformat.read(course / "source" / chapter / f"{chapter}.ipynb", as_version=4)
+    cells = [cell for cell in page.cells if "nbgrader" in cell.metadata]
+    return [
+        check.metadata.nbgrader.grade_id
+        for answer, check in zip(cells[::2], cells[1::2], strict=True)
+        if re.search(r"^def \w+\(\):", answer.source, re.M)
+    ]
 
 
 def by_exercise(course, chapter):
