@@ -50,7 +50,10 @@ def sighting_explorer(number: int = 11, agent: Arkaq | None = None) -> Explorer:
     centers, Q = agent.art.cluster_centers_, agent.q.Q  # type: ignore[union-attr]
     cells = Cells(map_of(centers)[0], Q.argmax(axis=1).tolist(), _WINDOW, palette=_PALE)
     last = len(followed) - 1
-    return Explorer(partial(draw, followed, cells), look=slider("look", last // 2, 0, last, tooltip="Which look of the walk"))
+    return Explorer(
+        partial(draw, followed, cells),
+        look=slider("look", last // 2, 0, last, tooltip="Which look of the walk"),
+    )
 
 
 def draw(followed: list[Stage], cells: Cells, look: int) -> Scene:

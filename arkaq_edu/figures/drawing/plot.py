@@ -39,6 +39,7 @@ class Plot:
         self.ax = ax
         self.fact = fact
         self._figure().set_label(fact)
+        describe_pictures()
         vars(self).update(artists)
 
     def __getattr__(self, name: str) -> Any:
@@ -78,12 +79,12 @@ def _titles(axes: Any) -> str:
     return "; ".join(filter(None, (ax.get_title(loc="left") for ax in axes)))
 
 
-def _describe_pictures() -> None:
-    """In a notebook, let a figure's fact be the text of its picture, and so its alt text."""
+def describe_pictures() -> None:
+    """In a notebook, let a figure's fact be the text of its picture, and so its alt text.
+
+    The inline backend forgets it when it begins, so this is called for each new figure.
+    """
     shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
     if shell is not None:
         text = shell.display_formatter.formatters["text/plain"]
         text.for_type(Figure, lambda figure, printer, cycle: printer.text(fact_of(figure)))
-
-
-_describe_pictures()

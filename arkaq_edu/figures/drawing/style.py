@@ -31,6 +31,8 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
 from numpy.typing import ArrayLike, NDArray
 
+from arkaq_edu.figures.drawing.plot import describe_pictures
+
 INK = "#222222"
 QUIET = "#6b6b6b"
 OURS = "#8a2f74"  # what we computed, unless it has the color of an action
@@ -85,6 +87,7 @@ def axes(
     """
     if ax is None:
         _, ax = plt.subplots(figsize=size, layout="constrained")
+        describe_pictures()
     ax.set(xlabel=xlabel, ylabel=ylabel)
     ax.set_title(title, loc="left", fontsize="medium", color=INK)
     ax.spines[["top", "right"]].set_visible(False)
