@@ -12,6 +12,7 @@ PYTHON = $(shell for p in python3 $(PYTHONS:%=python%) python; do \
 	2>/dev/null && echo $$p && break; done)
 NO_PYTHON = this course needs Python 3.11 to 3.15 with venv, and found none on the PATH \
 	(on Debian or Ubuntu: apt install python3 python3-venv)
+METHODS := kalman art mdp pomdp arkaq
 BENCH := build/bench
 REPORT := build/benchmarks
 # mushroom-rl brings torch, several GB. It is compared if you put it into build/bench yourself.
@@ -25,7 +26,8 @@ export UV_HTTP_RETRIES := 10
 export UV_HTTP_TIMEOUT := 120
 
 .PHONY: help install lab author slides grading student teaching test test-lowest test-newest \
-	soak fuzz check reproduce bench guard latency visits notebooks lock wheels
+	soak fuzz check reproduce bench guard latency visits notebooks lock wheels \
+	coverage mutation
 
 help:
 	@echo 'make lab        open the course in JupyterLab, in a copy of your own (arkaq-course)'
@@ -45,6 +47,8 @@ help:
 	@echo 'make test-lowest  test with the oldest versions that pyproject.toml allows'
 	@echo 'make test-newest  test with the newest versions there are'
 	@echo 'make fuzz       give the readers of files what they do not expect, for ten minutes'
+	@echo 'make coverage   measure which branches of the methods and the agent the tests take'
+	@echo 'make mutation   break the methods on purpose, and see which breaks no test notices'
 
 install: $(READY)
 
@@ -162,6 +166,25 @@ soak: $(READY)
 fuzz: $(READY)
 	$(BIN)/python -m pip install --quiet --target build/fuzz/atheris --upgrade atheris
 	PYTHONPATH=build/fuzz/atheris $(BIN)/python -m tests.fuzz
+
+# Coverage sees into a kernel only where it runs as plain Python.
+coverage: $(READY)
+	$(BIN)/python -m coverage run -m pytest -q \
+		$(METHODS:%=arkaq_edu/%) $(METHODS:%=tests/%)
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m coverage run --append -m pytest -q \
+		-p tests.plain $(METHODS:%=arkaq_edu/%) $(METHODS:%=tests/%)
+	for room in $(METHODS); do $(BIN)/python -m coverage report \
+		--include "arkaq_edu/$$room/*" --fail-under 95 || exit 1; done
+
+# Mutants of the methods: tests/mutation.md tells which survived, and why.
+mutation: $(BIN)/uv
+	$(BIN)/uv --no-config venv --quiet --clear --python $(BIN)/python build/mutation
+	$(BIN)/uv --no-config pip install --quiet --python build/mutation \
+		--requirement requirements.lock
+	$(BIN)/uv --no-config pip install --quiet --python build/mutation 'cosmic-ray>=8.4'
+	$(BIN)/uv --no-config pip install --quiet --python build/mutation --no-deps \
+		--no-build-isolation --editable .
+	build/mutation/bin/python -m tests.mutation
 
 $(BIN)/uv: $(READY)
 	$(BIN)/python -m pip install --quiet uv

@@ -84,9 +84,9 @@ def fit_noise(kf: KalmanFilter, Z: ArrayLike, U: ArrayLike | None = None) -> Kal
     n = len(kf.Q)
     sigmas = np.sqrt(np.concatenate([np.diag(kf.Q), np.diag(kf.R)]))
     unknown = int((sigmas > 0).sum())
-    seen = int(np.isfinite(scaled(np.zeros(unknown)).filter(Z, U).innovation).sum())
     if unknown == 0:
         raise ValueError("Q and R must hold some noise to scale, got zeros only")
+    seen = int(np.isfinite(scaled(np.zeros(unknown)).filter(Z, U).innovation).sum())
     if seen < unknown:
         raise ValueError(f"Z must hold at least {unknown} sighted numbers, got {seen}")
     best = minimize(

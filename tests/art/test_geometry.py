@@ -1,5 +1,7 @@
 """The map of centers: its cells, and their colors."""
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -39,3 +41,20 @@ def test_no_neighbors_share_a_color(n, seed):
     colors = np.array(six_colors(n, pairs))
     assert len(colors) == n and colors.min() >= 0 and colors.max() <= 5
     assert (colors[pairs[:, 0]] != colors[pairs[:, 1]]).all()
+
+
+def test_six_that_all_touch_take_six_colors_and_seven_are_no_map():
+    for n in (5, 6):
+        assert len(set(six_colors(n, list(itertools.combinations(range(n), 2))))) == n
+    with pytest.raises(ValueError, match="pairs must be those of a map in the plane"):
+        six_colors(7, list(itertools.combinations(range(7), 2)))
+
+
+def test_centers_as_far_as_allowed_still_have_cells_of_their_own():
+    centers = [[4.0, 0.0], [-4.0, 0.0], [0.0, -4.0]]
+    polygons, pairs = voronoi_cells(centers)
+    for center, polygon in zip(centers, polygons, strict=True):
+        assert Polygon(polygon).contains_point(center)
+    assert sorted(pairs.tolist()) == [[0, 1], [0, 2], [1, 2]]
+    with pytest.raises(ValueError, match="centers must be distinct points within 4 of 0"):
+        voronoi_cells([[4.01, 0.0]])

@@ -119,6 +119,16 @@ def test_a_batch_is_its_tracks(drawn):
     np.testing.assert_allclose(kalman_batch(**system, Z=tracks), expected, rtol=1e-12, atol=1e-12)
 
 
+@pytest.mark.parametrize("name", ["A", "H", "Q", "R"])
+def test_a_batch_in_which_one_matrix_changes(name):
+    """Doubled in its second row, and as given from then on."""
+    system = {"A": [[0.9]], "H": [[1.5]], "Q": [[0.3]], "R": [[2.0]], "P0": [[4.0]], "x0": [1.0]}
+    system[name] = np.array([1.0, 2.0, 1.0])[:, None, None] * system[name]
+    Z = np.array([[[1.0], [3.0], [2.0]], [[0.0], [-1.0], [5.0]]])
+    expected = [KalmanFilter(**system).filter(track).x for track in Z]
+    np.testing.assert_allclose(kalman_batch(**system, Z=Z), expected, rtol=1e-12)
+
+
 def test_the_noises_of_an_uneven_track_are_fitted():
     rng = np.random.default_rng(2)
     A = [constant_velocity(dt, 1)[0] for dt in rng.uniform(0.5, 2, 300)]
@@ -127,6 +137,13 @@ def test_the_noises_of_an_uneven_track_are_fitted():
     fitted = fit_noise(kf, Z)
     assert fitted.R[0, 0] == pytest.approx(400, rel=0.2)
     np.testing.assert_array_equal(fitted.A, kf.A)
+
+
+def test_the_default_start_is_what_the_first_step_shows():
+    """A velocity is seen through the first step: its variance is 1e6 R / dt**2."""
+    A = [constant_velocity(dt, 1)[0] for dt in (0.5, 3.0, 7.0)]
+    kf = KalmanFilter(A, [[1.0, 0.0]], np.zeros((2, 2)), [[9.0]])
+    np.testing.assert_allclose(kf.P0, np.diag([9e6, 36e6]), rtol=1e-12)
 
 
 def wanderer(**changes):
@@ -176,3 +193,5 @@ def test_a_noise_that_changes_may_be_assigned_and_one_may_replace_it():
     alone = wanderer(R=[[[1.0]]] * 2, P0=[[1]])
     assert alone.update([4.0], R=[[3.0]]) == pytest.approx([1.0])
     assert repr(kf) == "KalmanFilter(1 states, 1 measurements, 0 inputs)"
+    both = KalmanFilter(np.eye(2), [[[1, 0]]] * 3, np.eye(2), [[1]], [[1], [1]])
+    assert repr(both) == "KalmanFilter(2 states, 1 measurements, 1 inputs)"

@@ -81,3 +81,14 @@ def test_smoothing_where_part_of_the_state_is_known_exactly():
     np.testing.assert_allclose(x[:, 0] - x[-1, 0], 0.64 * 5 * np.arange(-29, 1), atol=1e-9)
     np.testing.assert_allclose(P[:, 0, 0], trace.P[-1, 0, 0], rtol=1e-9)
     np.testing.assert_array_equal(x[:, 2], 5)
+
+
+@pytest.mark.parametrize("odd", [1000.0, np.nan])
+def test_a_sighting_that_is_not_used_does_not_look_like_convergence(odd):
+    """Of a thing at rest, P_prior stays the same after such a row, and then falls on."""
+    kf = KalmanFilter([[1]], [[1]], [[0]], [[1]], x0=[0], P0=[[1]], gate=0.99)
+    for k in range(6):
+        Z = np.zeros((12, 1))
+        Z[k] = odd
+        P = kf.filter(Z).P[:, 0, 0]
+        np.testing.assert_allclose(np.delete(P, k), 1 / np.arange(2, 13), rtol=1e-12)

@@ -49,6 +49,19 @@ def test_ucb_stays_within_its_proven_bound_and_tries_every_machine_first():
     assert final.mean() - regret(game.expected, 0.7)[:, n // 2 - 1].mean() < 0.3 * final.mean()
 
 
+def test_ucb_takes_the_machine_whose_mean_could_be_highest():
+    """Mean + c sqrt(ln n / n_arm): the means are chosen so that these differ by 0.01."""
+    counts, rng = np.array([[65, 20, 4, 8], [100, 0, 0, 3]]), np.random.default_rng(0)
+    margin = 0.5 * np.sqrt(np.log(97) / np.array([65, 20, 4, 8]))
+    for best in range(4):
+        means = 0.6 - margin + 0.01 * (np.arange(4) == best)
+        chosen = UCB(0.5).choose(counts, np.array([means, [1.0, 0.0, 0.0, 1.0]]), rng)
+        assert chosen[0] == best and chosen[1] in (1, 2)
+    once = np.ones((1, 3), int)
+    wide = [UCB().choose(once, [[0.0, 0.1, 0.05]], rng).item() for _ in range(5)]
+    assert wide == [1] * 5 and UCB().c == pytest.approx(np.sqrt(2))
+
+
 def test_epsilon_is_the_share_of_random_pulls_in_the_end():
     game = play(Bandit([0.1, 0.9]), EpsilonGreedy(0.2), pulls=1500, players=400, rng=3)
     wrong = (game.arms[:, -500:] == 0).mean()

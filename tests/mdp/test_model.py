@@ -4,6 +4,7 @@ import pickle
 import subprocess
 import sys
 import warnings
+from typing import ClassVar
 
 import gymnasium
 import numpy as np
@@ -252,3 +253,11 @@ def test_a_large_environment_becomes_a_sparse_model(name, monkeypatch):
     lean = MDP.from_gymnasium(name)
     assert all(map(sparse.issparse, lean.T)) and (lean.R == dense.R).all()
     np.testing.assert_allclose(np.array([T_a.toarray() for T_a in lean.T]), dense.T, atol=1e-15)
+
+
+def test_a_table_that_names_no_start_starts_anywhere():
+    class Table:
+        P: ClassVar = {s: {0: [(1.0, (s + 1) % 4, 1.0, s == 3)]} for s in range(4)}
+
+    mdp = MDP.from_gymnasium(Table(), gamma=0.5)
+    np.testing.assert_allclose(mdp.start, [0.25] * 4 + [0.0])

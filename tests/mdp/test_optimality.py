@@ -11,6 +11,7 @@ from arkaq_edu.mdp import (
     discounted,
     finite_horizon,
 )
+from arkaq_edu.mdp.optimality import chain_curves, chosen_chains, coins
 from tests.mdp.worlds import all_policies, as_sparse, random_mdp, seeds
 
 
@@ -49,6 +50,7 @@ def test_delayed_rewards_have_closed_forms(chains, gamma, horizon):
     for_ever = [r * gamma**d / (1 - gamma) for d, r in chains]
     np.testing.assert_allclose(discounted(world)[0], for_ever, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(average_reward(world)[0], rewards, atol=1e-9)
+    assert world.start.tolist() == [1.0] + [0.0] * sum(delays)
 
 
 def test_finite_depends_on_h_discounted_on_gamma_average_on_neither():
@@ -101,6 +103,25 @@ def test_the_average_reward_of_a_sparse_model_with_forbidden_actions():
     mdp = MDP([swap, stay], [[3, -np.inf], [0, 1]], gamma=1.0)
     for model in (mdp, as_sparse(mdp)):
         assert average_reward(model).tolist() == [[1.5, -np.inf], [1.5, 1.5]]
+
+
+def test_where_the_best_chain_changes_along_an_axis():
+    """The lines of three chains meet at 2 (two of them), and all are equal from 6 on."""
+    x = np.arange(8)
+    curves = np.column_stack([2 - x, 0 * x, x - 2.0]) * (x < 6)[:, None]
+    ends, chosen = chosen_chains(x, curves)
+    assert ends.tolist() == [0, 1.5, 2.5, 5.5, 7] and chosen == [0, 3, 2, 3]
+    assert [coins(x) for x in (0, 0.12345, 58.46, 999.4, 999.6, 12345.6)] == [
+        "0", "0.123", "58.5", "999", "1000", "12346",
+    ]  # fmt: skip
+
+
+def test_the_curves_are_what_the_models_earn_per_step():
+    finite, geometric = chain_curves(12, (0.5, 0.9))
+    delays, rewards = np.array([2, 5, 6]), np.array([2.0, 10.0, 11.0])
+    steps = np.arange(1, 13)[:, None]
+    np.testing.assert_allclose(finite, rewards * np.maximum(steps - delays, 0) / steps)
+    np.testing.assert_allclose(geometric, rewards * np.array([[0.5], [0.9]]) ** delays)
 
 
 @pytest.mark.parametrize(

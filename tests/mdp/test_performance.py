@@ -37,6 +37,17 @@ def test_quality_is_one_at_the_optimum_and_zero_at_the_baseline():
     np.testing.assert_allclose(quality, [1.0, 0.0, 0.5])
 
 
+def test_quality_is_that_of_the_last_trials():
+    earned = np.random.default_rng(0).uniform(-50, 10, (3, 150))
+    for last in (1, 7, 150, 400):
+        means = [np.mean(row[max(0, 150 - last) :]) for row in earned]
+        expected = (np.array(means) + 20) / 30
+        quality = quality_of_convergence(earned, 10.0, baseline=-20.0, last=last)
+        np.testing.assert_allclose(quality, expected)
+    hundred = quality_of_convergence(earned, 10.0)
+    np.testing.assert_allclose(hundred, earned[:, 50:].mean(axis=1) / 10)
+
+
 def test_a_sure_strategy_can_be_slower_and_better():
     """What 2.1.2 weighs: UCB pays for certainty, greed is quick and sometimes wrong for ever."""
     bandit = Bandit([0.45, 0.55, 0.6])

@@ -373,3 +373,21 @@ def test_what_is_zero_up_to_rounding_is_a_positive_zero():
     R = np.eye(61)[:, [59]]
     small = policy_evaluation(MDP([chain], R, 0.5), [0] * 61)
     assert small.tolist() == [*(0.5 ** np.arange(59, -1, -1)), 0.0]
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e12])
+def test_of_actions_that_are_equal_but_for_rounding_the_first_is_taken(unit):
+    """0.1 + 0.2 is more than 0.3 by rounding."""
+    T = np.zeros((2, 3, 3))
+    T[0, 0, 2] = T[1, 0, 1] = 1
+    T[:, 1:, 2] = 1
+    R = np.array([[0.3, 0.1], [0.2, 0.2], [0.0, 0.0]]) * unit
+    assert R[0, 1] + R[1, 0] > R[0, 0] or unit > 1
+    for values, policy in (
+        value_iteration(MDP(T, R, 1.0), horizon=2),
+        value_iteration(MDP(T, R, 1.0)),
+    ):
+        np.testing.assert_allclose(values, np.array([0.3, 0.2, 0.0]) * unit)
+        assert policy[0] == 0
+    R[0, 1] += 1e-9 * unit
+    assert value_iteration(MDP(T, R, 1.0), horizon=2)[1][0] == 1

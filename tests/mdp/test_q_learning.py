@@ -285,6 +285,7 @@ BAD_UPDATES = [
     ((0, 0, 1.0, 1, False, 0), "n_steps must be an integer >= 1, got 0"),
     ((0, 0, 1.0, 1, False, 1.5), "n_steps must be an integer >= 1, got 1.5"),
     ((0, 0, 1.0, 1, "no"), "terminated must hold integers, got 'no'"),
+    ((0, 0, 1.0, 1, 2), r"terminated must .*\[0, 1\], got 2"),
     ((0, 0, 1.0, 1, [True, False]), r"terminated must be true or false, got \[True, False\]"),
     ((0, 0, 1.0, 1, [[1], [0, 1]]), "terminated must be an array of numbers, got"),
     ((0, 0, -2e100, 1), r"r must be at most 1e\+100 in magnitude, got -2e\+100"),
@@ -327,6 +328,7 @@ def test_numpy_scalars_and_whole_rewards_are_welcome():
         (([[0]], 0, 0.0, 0, False), r"the columns must have shape \(N,\), got \(1, 1\)"),
         ((0, 0, 0.0, 0, False, [1, 0]), r"n_steps must hold integers >= 1, got 0 at \(1,\)"),
         ((0, 0, 0.0, 0, ["no"]), "terminated must hold integers, got"),
+        ((0, 0, 0.0, 0, [1, 0, 2]), r"terminated must hold integers in \[0, 1\], got 2"),
         (
             ([0, 1], 1, 0.0, 0, False),
             r"a must be an action that state 1 allows, got 1 .* at \(1,\)",
