@@ -23,9 +23,8 @@ from collections import defaultdict
 from pathlib import Path
 from typing import NamedTuple
 
-os.environ["NUMBA_DISABLE_JIT"] = "1"
-os.environ["OPENBLAS_NUM_THREADS"] = "1"
-os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"  # to look for plugins takes longer than a test
+# To look for pytest's plugins takes longer than a test.
+PLAINLY = ("NUMBA_DISABLE_JIT", "PYTEST_DISABLE_PLUGIN_AUTOLOAD", "OPENBLAS_NUM_THREADS")
 
 ROOT = Path(__file__).parents[1]
 ENDLESS = 30.0  # seconds of work after which a mutant counts as noticed: it may never end
@@ -242,6 +241,7 @@ def main(arguments: list[str] | None = None) -> None:
     options = parser.parse_args(arguments)
 
     os.chdir(ROOT)
+    os.environ |= dict.fromkeys(PLAINLY, "1")
     import hypothesis
 
     for name in PRELOADED:
