@@ -6,10 +6,45 @@ import math
 
 import pymunk
 
-from arkaq_edu.field import pitch
+from arkaq_edu.field import arcs, pitch
+from arkaq_edu.field.arcs import Motion
 
 _WALL_THICKNESS = 100.0
-_GRAVITY = 9810.0  # mm/s^2
+
+
+class Physics:
+    """A space with all that is solid in it.
+
+    Attributes
+    ----------
+    space : pymunk.Space
+        It steps the bodies.
+    robot, ball : pymunk.Body
+        What moves.
+    control : pymunk.Body
+        What the robot's body follows: it has the velocity that the legs want.
+    """
+
+    def __init__(self) -> None:
+        self.space = pymunk.Space()
+        add_walls(self.space)
+        self.robot, self.control = add_robot(self.space)
+        self.ball = add_ball(self.space)
+
+    def put(self, robot: Motion, ball: Motion) -> None:
+        """Let robot and ball move like this; the legs want to stand."""
+        for body, (place, angle, velocity, spin) in ((self.robot, robot), (self.ball, ball)):
+            body.position, body.angle = (place.real, place.imag), angle
+            body.velocity, body.angular_velocity = (velocity.real, velocity.imag), spin
+        self.control.velocity, self.control.angular_velocity = (0.0, 0.0), 0.0
+
+    def motions(self) -> tuple[Motion, Motion]:
+        """Return how robot and ball move."""
+        robot, ball = (
+            Motion(complex(*b.position), b.angle, complex(*b.velocity), b.angular_velocity)
+            for b in (self.robot, self.ball)
+        )
+        return robot, ball
 
 
 def add_walls(space: pymunk.Space) -> None:
@@ -25,9 +60,8 @@ def add_walls(space: pymunk.Space) -> None:
     ]
     shapes: list[pymunk.Shape] = [pymunk.Segment(static, a, b, r) for a, b in sides]
     for post_x, post_y, radius, _, _ in pitch.posts().tolist():
-        shapes.append(pymunk.Circle(static, radius, (post_x, post_y)))
         # The side panel runs from the post to the wall behind it. It is as thick as the post, so
-        # that a fast ball cannot pass through it between two steps.
+        # that a fast ball cannot pass through it between two steps. Its round end is the post.
         back = math.copysign(x, post_x), post_y
         shapes.append(pymunk.Segment(static, (post_x, post_y), back, radius))
     for shape in shapes:
@@ -35,38 +69,33 @@ def add_walls(space: pymunk.Space) -> None:
     space.add(*shapes)
 
 
-def add_robot(
-    space: pymunk.Space, x: float, y: float, heading: float
-) -> tuple[pymunk.Body, pymunk.Body]:
+def add_robot(space: pymunk.Space) -> tuple[pymunk.Body, pymunk.Body]:
     """Add the robot; return its body, and the control body whose velocity the body follows."""
     mass, size = pitch.ROBOT_MASS, (pitch.ROBOT_LENGTH, pitch.ROBOT_WIDTH)
     body = pymunk.Body(mass, pymunk.moment_for_box(mass, size))
-    body.position, body.angle = (x, y), heading
+    control = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
     shape = pymunk.Poly.create_box(body, size)
     shape.elasticity, shape.friction = 0.1, 0.4
     shape.filter = pymunk.ShapeFilter(group=pitch.ROBOT_GROUP)
-    control = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
-    control.position, control.angle = body.position, heading
     # The legs push only as hard as the friction of the paws allows, so a wall is stronger.
     # max_bias = 0 keeps the joints from pulling the body back to the control body's place.
     legs = pymunk.PivotJoint(control, body, (0, 0), (0, 0))
-    legs.max_bias, legs.max_force = 0, mass * _GRAVITY
+    legs.max_bias, legs.max_force = 0, body.mass * arcs.GRIP
     turn = pymunk.GearJoint(control, body, 0.0, 1.0)
-    turn.max_bias, turn.max_force = 0, mass * _GRAVITY * pitch.ROBOT_WIDTH
+    turn.max_bias, turn.max_force = 0, body.moment * arcs.TWIST
     space.add(body, shape, control, legs, turn)
     return body, control
 
 
-def add_ball(space: pymunk.Space, x: float, y: float) -> pymunk.Body:
-    """Add a ball at rest. Its rolling resistance is a weak joint to the ground."""
+def add_ball(space: pymunk.Space) -> pymunk.Body:
+    """Add the ball. Its rolling resistance is a weak joint to the ground."""
     mass, radius = pitch.BALL_MASS, pitch.BALL_RADIUS
     body = pymunk.Body(mass, pymunk.moment_for_circle(mass, 0, radius))
-    body.position = x, y
     shape = pymunk.Circle(body, radius)
     shape.elasticity, shape.friction = 0.6, 0.3
     rolling = pymunk.PivotJoint(space.static_body, body, (0, 0), (0, 0))
-    rolling.max_bias, rolling.max_force = 0, mass * pitch.BALL_DECELERATION
+    rolling.max_bias, rolling.max_force = 0, body.mass * arcs.ROLL
     spinning = pymunk.GearJoint(space.static_body, body, 0.0, 1.0)
-    spinning.max_bias, spinning.max_force = 0, mass * pitch.BALL_DECELERATION * radius
+    spinning.max_bias, spinning.max_force = 0, body.moment * arcs.SPIN
     space.add(body, shape, rolling, spinning)
     return body

@@ -31,8 +31,10 @@ _LINES = np.sort(np.reshape(pitch.lines(), (-1, 2, 2)), axis=1).reshape(-1, 4)
 _ROWS, _COLS = np.indices((HEIGHT, WIDTH)).reshape(2, -1)
 _GOAL_ACROSS = pitch.GOAL_WIDTH + 4 * pitch.POST_RADIUS
 
-# The colors of the pixels at columns and rows.
-Look = Callable[[NDArray[np.int64], NDArray[np.int64]], NDArray[np.uint8]]
+_EACH_COL, _EACH_ROW = np.arange(WIDTH), np.arange(HEIGHT)
+
+# Of the pixels at columns and rows, the first and the last that is sky-blue; (-1, -1) if none is.
+Look = Callable[[NDArray[np.int64], NDArray[np.int64]], tuple[int, int]]
 
 
 class Sighting(NamedTuple):
@@ -174,6 +176,17 @@ def _colors(view, cols, rows):
     for i in range(len(cols)):
         colors[i] = _color(view, cols[i], rows[i])
     return colors
+
+
+@kernel
+def _blue_ends(view, cols, rows):
+    """Return which of the pixels at `cols` and `rows` are the first and the last sky-blue one."""
+    first, last = 0, len(cols) - 1
+    while first <= last and _color(view, cols[first], rows[first]) != pitch.BLUE:
+        first += 1
+    while first < last and _color(view, cols[last], rows[last]) != pitch.BLUE:
+        last -= 1
+    return (first, last) if first <= last else (-1, -1)
 
 
 @kernel
@@ -384,7 +397,7 @@ class Camera:
         if self.blurred(world):
             return None
         view = self.view(world)
-        seen = self._goal(lambda cols, rows: _colors(view, cols, rows))
+        seen = self._goal(lambda cols, rows: _blue_ends(view, cols, rows))
         return seen and seen._replace(orientation=seen.orientation + world.pan)
 
     def goal_in(self, colors: np.ndarray) -> GoalSighting | None:
@@ -400,17 +413,20 @@ class Camera:
         GoalSighting or None
             The same as `goal` from the same place with the head straight.
         """
-        colors = _checked(colors)
-        return self._goal(lambda cols, rows: colors[rows, cols])
+        is_blue = _checked(colors) == pitch.BLUE
+
+        def look(cols: NDArray[np.int64], rows: NDArray[np.int64]) -> tuple[int, int]:
+            blue = np.flatnonzero(is_blue[rows, cols])
+            return (int(blue[0]), int(blue[-1])) if len(blue) else (-1, -1)
+
+        return self._goal(look)
 
     def _goal(self, look: Look) -> GoalSighting | None:
         """Measure the goal on the row of the horizon."""
         horizon = max(0, math.floor(HEIGHT / 2 - FOCAL_LENGTH * math.tan(self.tilt)))
-        cols = np.arange(WIDTH)
-        blue = np.flatnonzero(look(cols, np.full(WIDTH, horizon)) == pitch.BLUE)
-        if not len(blue):
+        first, last = look(_EACH_COL, np.full(WIDTH, horizon))
+        if first < 0:
             return None
-        first, last = int(blue[0]), int(blue[-1])
         ahead = self._ahead(horizon + 0.5 - HEIGHT / 2)
         left, right = math.atan2(WIDTH / 2 - first, ahead), math.atan2(WIDTH / 2 - last - 1, ahead)
         cut_left, cut_right = first == 0, last == WIDTH - 1
@@ -427,10 +443,9 @@ class Camera:
         upright post leaning: in each row it lies `aside` times as far to the right as the ray of
         that row goes ahead.
         """
-        rows = np.arange(HEIGHT)
-        cols = np.floor(aside * self._ahead(rows + 0.5 - HEIGHT / 2) + WIDTH / 2)
-        blue = np.flatnonzero(look(cols.clip(0, WIDTH - 1).astype(int), rows) == pitch.BLUE)
-        edges = np.array([blue[0], blue[-1] + 1]) - HEIGHT / 2
+        cols = np.floor(aside * self._ahead(_EACH_ROW + 0.5 - HEIGHT / 2) + WIDTH / 2)
+        first, last = look(cols.clip(0, WIDTH - 1).astype(int), _EACH_ROW)
+        edges = np.array([first, last + 1]) - HEIGHT / 2
         fall = FOCAL_LENGTH * math.sin(self.tilt) + edges * math.cos(self.tilt)
         top, foot = fall / (self._ahead(edges) * math.hypot(1.0, aside))
         return 2 * math.asin(min(1.0, _GOAL_ACROSS / 2 * (foot - top) / pitch.GOAL_HEIGHT))

@@ -10,6 +10,7 @@ import pymunk
 
 from arkaq_edu import _checks
 from arkaq_edu.field import pitch
+from arkaq_edu.field.arcs import RESTING, Motion
 
 # Where the ball should lie before a kick (mm): ahead and to the left of the point that the robot
 # turns about. It is a little to the right, because the real robot's kicks go a little to the right.
@@ -23,8 +24,6 @@ _PAW_START = 12.0  # mm into the swing; before that the paw is slow and meets no
 # How far they move in one step (mm). A ball that moves this far passes through nothing.
 _PAW_STRIDE, _BALL_STRIDE = 2.0, 30.0
 _LONGEST_STEP = 1 / 20  # s
-_STEPS_A_LOOK = 3  # steps between two checks of the ball's speed
-_RESTING = 1.0  # mm/s; a slower ball is at rest
 
 Path = list[tuple[float, float]]
 
@@ -75,7 +74,12 @@ def build_paw(pose: tuple[float, float, float]) -> pymunk.Body:
     return paw
 
 
-def swing_paw(paw: pymunk.Body, ball: pymunk.Body, step: Callable[[float], None]) -> None:
+def swing_paw(
+    paw: pymunk.Body,
+    ball: pymunk.Body,
+    step: Callable[[float], None],
+    tick: Callable[[float], None],
+) -> None:
     """Swing the paw until the ball moves or the paw has passed it.
 
     Paw and ball are round, so the ball leaves along the line through their centers. A ball that
@@ -87,40 +91,47 @@ def swing_paw(paw: pymunk.Body, ball: pymunk.Body, step: Callable[[float], None]
         In the same space.
     step : callable
         Steps that space by a time (s).
+    tick : callable
+        Lets a time (s) pass in which the paw meets nothing.
     """
-    forward, traveled = paw.rotation_vector, _PAW_START
-    while traveled < 2 * PAW_TRAVEL and ball.velocity.length < _RESTING:
+    (x, y), forward, traveled = paw.position, paw.rotation_vector, _PAW_START
+    free = paw.position.get_distance(ball.position) - PAW_RADIUS - pitch.BALL_RADIUS
+    while traveled < 2 * PAW_TRAVEL and ball.velocity.length < RESTING:
         speed = PAW_RATE * traveled
-        paw.velocity = forward * speed
-        step(_PAW_STRIDE / speed)
         traveled += _PAW_STRIDE
+        if traveled - _PAW_START < free - _PAW_STRIDE:
+            x, y = x + forward.x * _PAW_STRIDE, y + forward.y * _PAW_STRIDE
+            paw.position = x, y
+            tick(_PAW_STRIDE / speed)
+        else:
+            paw.velocity = forward * speed
+            step(_PAW_STRIDE / speed)
 
 
-def roll_out(ball: pymunk.Body, acceleration: float, step: Callable[[float], None]) -> Path:
-    """Let the ball roll until it rests, and return its path (mm).
+def roll_out(
+    ball: Motion,
+    acceleration: float,
+    roll: Callable[[Motion, complex, float], tuple[Motion, list[complex]]],
+) -> tuple[Motion, Path]:
+    """Let the ball roll until it rests; return its motion then, and its path (mm).
 
     Parameters
     ----------
-    ball : pymunk.Body
-        In a space.
+    ball : Motion
+        The ball when it leaves the paw.
     acceleration : float
         Sideways acceleration (mm/s^2), to the left of the ball's first direction.
-    step : callable
-        Steps that space by a time (s).
+    roll : callable
+        Lets the ball roll for a while under a push (mm/s^2), in steps of a time (s); returns its
+        motion and the places that it has passed.
     """
-    force = ball.velocity.normalized().perpendicular() * (acceleration * ball.mass)
-    path: Path = [(ball.position.x, ball.position.y)]
-    speed, bumped = ball.velocity.length, False
-    while speed > _RESTING:
-        # pymunk starts each contact with the impulse of the last step, scaled by the step's
-        # length. A longer step right after a bump would push the ball twice.
-        if not bumped:
-            dt = min(_LONGEST_STEP, _BALL_STRIDE / speed)
-        for _ in range(_STEPS_A_LOOK):
-            ball.force = force
-            step(dt)
-        path.append((ball.position.x, ball.position.y))
-        before, speed = speed, ball.velocity.length
-        bumped = before - speed > 2 * _STEPS_A_LOOK * dt * pitch.BALL_DECELERATION
-    ball.velocity = 0.0, 0.0
-    return path
+    path, speed = [ball.place], abs(ball.velocity)
+    if speed > RESTING:
+        push = 1j * acceleration * ball.velocity / speed
+        # One length for all steps: pymunk starts each with the impulses of the last, scaled by
+        # its length, so that a longer one would push the ball too much.
+        dt = min(_LONGEST_STEP, _BALL_STRIDE / speed)
+    while abs(ball.velocity) > RESTING:
+        ball, places = roll(ball, push, dt)
+        path += places
+    return ball._replace(velocity=0j), [(place.real, place.imag) for place in path]

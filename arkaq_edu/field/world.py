@@ -5,20 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import pymunk
 
 from arkaq_edu import _checks
-from arkaq_edu.field import bodies, pitch
+from arkaq_edu.field import arcs, pitch
+from arkaq_edu.field.arcs import CHORDS, CYCLE, STEP, SUBSTEPS, Motion
+from arkaq_edu.field.bodies import Physics
 from arkaq_edu.field.head import Head
 from arkaq_edu.field.kick import Kick, build_paw, roll_out, swing_paw
 
-CYCLE = 0.64  # s
-SUBSTEPS = 80  # physics steps in a cycle
-_STEP = CYCLE / SUBSTEPS
-# A curved footstep is walked as this many straight chords.
-_CHORDS = 8
 LONGEST_FOOTSTEP = 194.0  # mm
 FASTEST_BALL = 10_000.0  # mm/s; a faster one could pass through a post between two steps
 LONGEST_STAND = 3600.0  # s
@@ -76,7 +74,8 @@ class World:
         forward = (left + right) / 2,      turn = (right - left) / body width.
 
     The body follows the velocity of a control body through joints of limited force. So a wall or a
-    post stops it. The ball rolls with a constant deceleration.
+    post stops it. The ball rolls with a constant deceleration. While nothing can be touched, both
+    move in closed form (`arkaq_edu.field.arcs`), which leads to the same place.
 
     Parameters
     ----------
@@ -100,7 +99,7 @@ class World:
     time : float
         Seconds since the reset.
     watch : callable or None
-        Called after each physics step while the robot kicks or stands.
+        Called after each step while the robot kicks or stands.
 
     References
     ----------
@@ -150,13 +149,24 @@ class World:
         bx, by = _checks.array("ball", ball, (2,)).tolist()
         _check_on_carpet("robot", rx, ry)
         _check_on_carpet("ball", bx, by)
-        self.space = pymunk.Space()
-        bodies.add_walls(self.space)
-        self._robot, self._control = bodies.add_robot(self.space, rx, ry, heading)
-        self._ball = bodies.add_ball(self.space, bx, by)
+        self._robot = Motion(complex(rx, ry), heading, 0j, 0.0)
+        self._ball = Motion(complex(bx, by), 0.0, 0j, 0.0)
+        self._physics: Physics | None = None
         self._paw: pymunk.Body | None = None
         self.time = 0.0
         self._pan_from = self._pan_to = self._pan_since = 0.0
+
+    def _enter_physics(self) -> Physics:
+        """Hand robot and ball over to the physics, built when something first comes near."""
+        if self._physics is None:
+            self._physics = Physics()
+        self._physics.put(self._robot, self._ball)
+        return self._physics
+
+    @property
+    def space(self) -> pymunk.Space:
+        """The pymunk space, with robot and ball where they are now."""
+        return self._enter_physics().space
 
     def cycle(self, left: float, right: float) -> None:
         """Take one footstep cycle (640 ms).
@@ -178,31 +188,40 @@ class World:
         right *= 1 + variation * self.rng.standard_normal()
         forward = (left + right) / 2
         turn = (right - left) / pitch.ROBOT_WIDTH + self.legs.pull * forward
-        self._move(forward / CYCLE, self.legs.slide * forward / CYCLE, turn / CYCLE)
-
-    def _move(self, ahead: float, sideways: float, spin: float) -> None:
-        """Move the body for one cycle at a velocity in its own frame (mm/s, mm/s, rad/s)."""
-        body, control, step = self._robot, self._control, self.space.step
-        control.angular_velocity = spin
-        for _ in range(_CHORDS):
-            # The mean heading of the coming chord, so that the chords follow the arc.
-            heading = body.angle + spin * CYCLE / _CHORDS / 2
-            c, s = math.cos(heading), math.sin(heading)
-            control.velocity = ahead * c - sideways * s, ahead * s + sideways * c
-            for _ in range(SUBSTEPS // _CHORDS):
-                step(_STEP)
+        self._move(complex(forward, self.legs.slide * forward) / CYCLE, turn / CYCLE)
         self.time += CYCLE
+
+    def _move(self, velocity: complex, spin: float) -> None:
+        """Move the body for one cycle at a velocity in its own frame (mm/s, rad/s)."""
+        if arcs.out_of_reach(self._robot, self._ball, abs(velocity), CYCLE):
+            self._robot = arcs.walk(self._robot, velocity, spin)
+            self._ball = arcs.roll(self._ball, SUBSTEPS)
+            return
+        physics = self._enter_physics()
+        body, control, step = physics.robot, physics.control, physics.space.step
+        control.angular_velocity = spin
+        for _ in range(CHORDS):
+            wanted = arcs.chord(velocity, body.angle, spin)
+            control.velocity = wanted.real, wanted.imag
+            for _ in range(SUBSTEPS // CHORDS):
+                step(STEP)
+        self._robot, self._ball = physics.motions()
 
     def stand(self, seconds: float) -> None:
         """Stand still for a time (s) of at most an hour, rounded up to whole physics steps."""
         seconds = _checks.number("seconds", seconds, 0, LONGEST_STAND)
         self._halt()
-        for _ in range(math.ceil(seconds / _STEP)):
-            self._advance(_STEP)
+        steps = math.ceil(seconds / STEP)
+        if not self._ball.velocity and arcs.out_of_reach(self._robot, self._ball, 0.0, seconds):
+            for _ in range(steps):
+                self._tick(STEP)
+            return
+        physics = self._enter_physics()
+        for _ in range(steps):
+            self._advance(physics, STEP)
 
     def _halt(self) -> None:
-        for body in (self._control, self._robot):
-            body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
+        self._robot = self._robot._replace(velocity=0j, spin=0.0)
 
     def look(self, pan: float) -> None:
         """Begin to pan the head to an angle (rad, to the left) within its reach."""
@@ -238,8 +257,8 @@ class World:
         """
         x, y = _checks.array("ball", (x, y), (2,), allow_nan=True).tolist()
         _check_on_carpet("ball", x, y)
-        self.space.remove(self._ball, *self._ball.shapes, *self._ball.constraints)
-        self._ball = bodies.add_ball(self.space, x, y)
+        self._ball = Motion(complex(x, y), 0.0, 0j, 0.0)
+        self._physics = None  # it still knows what the ball touched elsewhere
 
     def swing_paw(self) -> list[tuple[float, float]]:
         """Kick, and let the ball roll until it rests.
@@ -250,14 +269,15 @@ class World:
             The ball's path (mm). It has one point if the paw does not reach the ball.
         """
         self._halt()
-        self._paw = build_paw(self.pose)
+        physics, self._paw = self._enter_physics(), build_paw(self.pose)
         shapes = tuple(self._paw.shapes)
-        self.space.add(self._paw, *shapes)
-        swing_paw(self._paw, self._ball, self._advance)
-        self.space.remove(self._paw, *shapes)
+        physics.space.add(self._paw, *shapes)
+        swing_paw(self._paw, physics.ball, partial(self._advance, physics), self._tick)
+        physics.space.remove(self._paw, *shapes)
         self._paw = None
         swerve = self.kick.swerve * self.rng.uniform(-1.0, 1.0)
-        return roll_out(self._ball, swerve, self._advance)
+        self._ball, path = roll_out(self._ball, swerve, self._roll)
+        return path
 
     @property
     def paw(self) -> tuple[float, float] | None:
@@ -267,11 +287,33 @@ class World:
         x, y = self._paw.position
         return x, y
 
-    def _advance(self, dt: float) -> None:
-        self.space.step(dt)
+    def _advance(self, physics: Physics, dt: float) -> None:
+        physics.space.step(dt)
+        self._robot, self._ball = physics.motions()
+        self._tick(dt)
+
+    def _tick(self, dt: float) -> None:
         self.time += dt
         if self.watch is not None:
             self.watch()
+
+    def _roll(self, ball: Motion, push: complex, dt: float) -> tuple[Motion, list[complex]]:
+        """Let the ball roll until something may be in its way, else for one look by physics."""
+        end, way = arcs.coast(ball, push, dt, self._robot)
+        places = way.tolist()
+        for place in places:
+            self.time += dt
+            if self.watch is not None:
+                self._ball = Motion(place, 0.0, 0j, 0.0)
+                self.watch()
+        self._ball = end
+        if places:
+            return end, places[arcs.LOOK - 1 :: arcs.LOOK]
+        physics = self._enter_physics()
+        for _ in range(arcs.LOOK):
+            physics.ball.force = push.real * pitch.BALL_MASS, push.imag * pitch.BALL_MASS
+            self._advance(physics, dt)
+        return self._ball, [self._ball.place]
 
     def roll_ball(self, velocity: tuple[float, float]) -> None:
         """Set the ball rolling at `velocity` (mm/s), at most 10,000 mm/s.
@@ -283,19 +325,18 @@ class World:
         """
         vx, vy = _checks.array("velocity", velocity, (2,)).tolist()
         _checks.number("velocity (its length)", math.hypot(vx, vy), 0, FASTEST_BALL)
-        self._ball.velocity = vx, vy
+        self._ball = self._ball._replace(velocity=complex(vx, vy))
 
     @property
     def pose(self) -> tuple[float, float, float]:
         """x, y (mm) and heading (rad) of the robot."""
-        x, y = self._robot.position
-        return x, y, self._robot.angle
+        place = self._robot.place
+        return place.real, place.imag, self._robot.angle
 
     @property
     def ball(self) -> tuple[float, float]:
         """x, y (mm) of the ball's center."""
-        x, y = self._ball.position
-        return x, y
+        return self._ball.place.real, self._ball.place.imag
 
     def ball_from_robot(self) -> tuple[float, float]:
         """Return the true distance (mm) and orientation (rad) of the ball from the robot."""

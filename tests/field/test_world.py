@@ -187,14 +187,15 @@ def free_pose(rng, near_goal):
 
 
 def watched(world, look):
-    """Have `look` called after every substep; return the list of what it says."""
-    seen, step = [], world.space.step
+    """Have `look` called with every body after every substep of the physics; return its answers."""
+    space = world.space
+    seen, step = [-math.inf], space.step
 
     def step_and_look(dt):
         step(dt)
-        seen.append(look())
+        seen.append(look(*space.bodies))
 
-    world.space.step = step_and_look
+    space.step = step_and_look
     return seen
 
 
@@ -212,7 +213,9 @@ def test_the_robot_cannot_push_through_walls_posts_or_panels(gaits, deepest_afte
         pose = free_pose(rng, near_goal=trial % 2)
         world = World(rng=trial)
         world.reset(pose, UPPER_LEFT if math.dist(pose[:2], UPPER_LEFT) > 500 else (0.0, 0.0))
-        depths = watched(world, lambda w=world: robot_inside_something(w.pose))
+        depths = watched(
+            world, lambda body, *_: robot_inside_something((*body.position, body.angle))
+        )
         for _ in range(12):
             world.cycle(*gaits[trial % len(gaits)])
             assert depths[-1] < deepest_after_a_cycle
@@ -265,7 +268,7 @@ def test_a_fast_ball_passes_through_nothing():
         world = World(rng=0)
         world.reset((0.0, 0.0, 0.0), (x, y))
         world.roll_ball((3000 * math.cos(angle), 3000 * math.sin(angle)))
-        depths = watched(world, lambda w=world: ball_inside_something(*w.ball))
+        depths = watched(world, lambda body, control, ball: ball_inside_something(*ball.position))
         for _ in range(20):
             world.cycle(0.0, 0.0)
         # A shot goes in by less than it flies in a substep, 24 mm, and comes out again.
