@@ -57,7 +57,7 @@ def number(
     Traceback (most recent call last):
     ValueError: vigilance must be a number in (0, 1], got -2
     """
-    x = _real(value)
+    x = value if type(value) is float else _real(value)
     unbounded = low == -math.inf and high == math.inf
     inside = (low < x if open_low else low <= x) and (x < high if open_high else x <= high)
     if not inside or (unbounded and math.isinf(x)):  # NaN is inside nothing
@@ -151,7 +151,10 @@ def array(
     >>> array("Z", np.ma.masked_equal([3.0, -1.0], -1.0), (2,), allow_nan=True)
     array([ 3., nan])
     """
-    x = value if type(value) is np.ndarray and value.dtype == np.float64 else _floats(name, value)
+    if type(value) is np.ndarray and value.dtype.kind in "biuf":  # nothing is masked or text
+        x = value.astype(np.float64, copy=False)
+    else:
+        x = _floats(name, value)
     fits = (
         shape is None
         or x.shape == shape
@@ -206,7 +209,7 @@ def _floats(name: str, value: ArrayLike) -> NDArray[np.float64]:
             x = value if isinstance(value, np.ndarray) else np.asarray(value)
         if x.dtype.kind not in "biufO":
             raise TypeError
-        if type(x) is np.ndarray and x.dtype.kind != "O":  # no mask, so nothing is missing
+        if type(x) is np.ndarray and x.dtype.kind != "O":
             return x.astype(np.float64)
         if x.dtype.kind == "O":  # mixed entries: missing ones become NaN, text is refused
             entries = [_entry(entry) for entry in np.ma.filled(x, np.nan).flat]
