@@ -1,7 +1,7 @@
 """The football field: pymunk physics, the legged robot and its camera, the supervisor.
 
 Thesis 5.1. Units: mm, rad, s, g; orientation is positive to the left.
-`drive` is the robot driven by hand.
+`drive` is the robot driven by hand; `arcs` is the motion of what touches nothing, in closed form.
 
 Each of the three uncertainties of thesis 5.1.3 is a dataclass of `World` and can be turned off:
 

@@ -457,7 +457,7 @@ def figure_5_33(ax: Axes | None = None) -> Plot:
     --------
     >>> from matplotlib.figure import Figure
     >>> figure_5_33(Figure().subplots())
-    missed: the ball lies 1,402 mm from the robot, not in the goal
+    missed: the ball lies 1,243 mm from the robot, not in the goal
     """
     world, path = first_miss()
     distance, _ = world.ball_from_robot()
