@@ -78,7 +78,7 @@ def swing_paw(
     paw: pymunk.Body,
     ball: pymunk.Body,
     step: Callable[[float], None],
-    tick: Callable[[float], None],
+    move: Callable[[float, float, float], None],
 ) -> None:
     """Swing the paw until the ball moves or the paw has passed it.
 
@@ -91,21 +91,21 @@ def swing_paw(
         In the same space.
     step : callable
         Steps that space by a time (s).
-    tick : callable
-        Lets a time (s) pass in which the paw meets nothing.
+    move : callable
+        Moves the paw, which meets nothing on the way, to x and y (mm) in a time (s).
     """
     (x, y), forward, traveled = paw.position, paw.rotation_vector, _PAW_START
-    free = paw.position.get_distance(ball.position) - PAW_RADIUS - pitch.BALL_RADIUS
+    gap = paw.position.get_distance(ball.position) - PAW_RADIUS - pitch.BALL_RADIUS
+    while traveled < min(2 * PAW_TRAVEL, _PAW_START + gap - 2 * _PAW_STRIDE):
+        x, y = x + forward.x * _PAW_STRIDE, y + forward.y * _PAW_STRIDE
+        move(x, y, _PAW_STRIDE / (PAW_RATE * traveled))
+        traveled += _PAW_STRIDE
+    paw.position = x, y
     while traveled < 2 * PAW_TRAVEL and ball.velocity.length < RESTING:
         speed = PAW_RATE * traveled
+        paw.velocity = forward * speed
+        step(_PAW_STRIDE / speed)
         traveled += _PAW_STRIDE
-        if traveled - _PAW_START < free - _PAW_STRIDE:
-            x, y = x + forward.x * _PAW_STRIDE, y + forward.y * _PAW_STRIDE
-            paw.position = x, y
-            tick(_PAW_STRIDE / speed)
-        else:
-            paw.velocity = forward * speed
-            step(_PAW_STRIDE / speed)
 
 
 def roll_out(

@@ -219,6 +219,7 @@ class World:
         physics = self._enter_physics()
         for _ in range(steps):
             self._advance(physics, STEP)
+        self._robot, self._ball = physics.motions()
 
     def _halt(self) -> None:
         self._robot = self._robot._replace(velocity=0j, spin=0.0)
@@ -272,9 +273,10 @@ class World:
         physics, self._paw = self._enter_physics(), build_paw(self.pose)
         shapes = tuple(self._paw.shapes)
         physics.space.add(self._paw, *shapes)
-        swing_paw(self._paw, physics.ball, partial(self._advance, physics), self._tick)
+        swing_paw(self._paw, physics.ball, partial(self._advance, physics), self._move_paw)
         physics.space.remove(self._paw, *shapes)
         self._paw = None
+        self._robot, self._ball = physics.motions()
         swerve = self.kick.swerve * self.rng.uniform(-1.0, 1.0)
         self._ball, path = roll_out(self._ball, swerve, self._roll)
         return path
@@ -287,9 +289,15 @@ class World:
         x, y = self._paw.position
         return x, y
 
+    def _move_paw(self, x: float, y: float, dt: float) -> None:
+        if self.watch is not None and self._paw is not None:
+            self._paw.position = x, y
+        self._tick(dt)
+
     def _advance(self, physics: Physics, dt: float) -> None:
         physics.space.step(dt)
-        self._robot, self._ball = physics.motions()
+        if self.watch is not None:
+            self._robot, self._ball = physics.motions()
         self._tick(dt)
 
     def _tick(self, dt: float) -> None:
@@ -313,6 +321,7 @@ class World:
         for _ in range(arcs.LOOK):
             physics.ball.force = push.real * pitch.BALL_MASS, push.imag * pitch.BALL_MASS
             self._advance(physics, dt)
+        self._robot, self._ball = physics.motions()
         return self._ball, [self._ball.place]
 
     def roll_ball(self, velocity: tuple[float, float]) -> None:
