@@ -153,6 +153,8 @@ def array(
     """
     if type(value) is np.ndarray and value.dtype.kind in "biuf":  # nothing is masked or text
         x = value.astype(np.float64, copy=False)
+    elif isinstance(value, (tuple, list)) and all(type(entry) is float for entry in value):
+        x = np.array(value, dtype=np.float64)
     else:
         x = _floats(name, value)
     fits = (

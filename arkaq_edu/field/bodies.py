@@ -30,13 +30,16 @@ class Physics:
         add_walls(self.space)
         self.robot, self.control = add_robot(self.space)
         self.ball = add_ball(self.space)
+        self._last: tuple[Motion, Motion] | None = None
 
     def put(self, robot: Motion, ball: Motion) -> None:
-        """Let robot and ball move like this; the legs want to stand."""
+        """Let robot and ball move like this, unless they do already."""
+        known, self._last = self._last, None
+        if (robot, ball) == known:
+            return
         for body, (place, angle, velocity, spin) in ((self.robot, robot), (self.ball, ball)):
             body.position, body.angle = (place.real, place.imag), angle
             body.velocity, body.angular_velocity = (velocity.real, velocity.imag), spin
-        self.control.velocity, self.control.angular_velocity = (0.0, 0.0), 0.0
 
     def motions(self) -> tuple[Motion, Motion]:
         """Return how robot and ball move."""
@@ -44,7 +47,13 @@ class Physics:
             Motion(complex(*b.position), b.angle, complex(*b.velocity), b.angular_velocity)
             for b in (self.robot, self.ball)
         )
+        self._last = robot, ball
         return robot, ball
+
+    def want(self, velocity: complex, spin: float) -> None:
+        """Let the legs want a velocity (mm/s) and a turn (rad/s)."""
+        self.control.velocity = velocity.real, velocity.imag
+        self.control.angular_velocity = spin
 
 
 def add_walls(space: pymunk.Space) -> None:

@@ -198,13 +198,12 @@ class World:
             self._ball = arcs.roll(self._ball, SUBSTEPS)
             return
         physics = self._enter_physics()
-        body, control, step = physics.robot, physics.control, physics.space.step
-        control.angular_velocity = spin
+        body, step = physics.robot, physics.space.step
         for _ in range(CHORDS):
-            wanted = arcs.chord(velocity, body.angle, spin)
-            control.velocity = wanted.real, wanted.imag
+            physics.want(arcs.chord(velocity, body.angle, spin), spin)
             for _ in range(SUBSTEPS // CHORDS):
                 step(STEP)
+        physics.want(0j, 0.0)
         self._robot, self._ball = physics.motions()
 
     def stand(self, seconds: float) -> None:
