@@ -324,6 +324,8 @@ TAKES_NO_NUMBERS = set(
                 "usual_learning", "usual_vigilance",
             )
         ),
+        "experiments.approach.Stage",
+        "experiments.approach.stages",
         "experiments.approach.Trajectory",
         "experiments.goal.BestPolicy",
         "experiments.goal.LookAround",

@@ -72,7 +72,8 @@ def fact_of(figure: Figure) -> str:
     >>> fact_of(figure)
     'The line rises'
     """
-    return _titles(figure.axes) or figure.get_suptitle() or figure.get_label() or repr(figure)
+    label = str(figure.get_label())
+    return _titles(figure.axes) or figure.get_suptitle() or label or repr(figure)
 
 
 def _titles(axes: Any) -> str:
