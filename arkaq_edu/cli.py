@@ -111,6 +111,7 @@ def explore(name: str, patterns: Path | None, ip: str, port: int, no_browser: bo
         if name != "vigilance":
             raise click.UsageError("--patterns applies only to vigilance")
         read_patterns(patterns.read_text(encoding="utf-8-sig"))  # refused here, not in the page
+    EXPLORERS[name]()  # what is compiled at first use is compiled now, not before the class
     _start_voila(name, patterns and patterns.resolve(), ip, port, no_browser)
 
 
