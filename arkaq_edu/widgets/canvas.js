@@ -247,8 +247,11 @@ function takeInput(model, canvas, panelAt) {
 // What ipywidgets leaves undone around the canvas: its sliders have no name and say a rounded
 // value, and a key pressed on them is also a shortcut of JupyterLab.
 function befriend(root) {
-  root.dataset.lmSuppressShortcuts = "true";
   const tell = () => {
+    // On each of them: JupyterLab's shortcuts look at what has the focus before they look above it.
+    for (const control of root.querySelectorAll("button, select, input, [role=slider]")) {
+      control.dataset.lmSuppressShortcuts = "true";
+    }
     for (const row of root.querySelectorAll(".widget-hslider, .widget-play")) {
       const handle = row.querySelector("[role=slider]");
       handle?.setAttribute("aria-label", row.querySelector(".widget-label").textContent);

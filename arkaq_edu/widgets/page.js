@@ -11,7 +11,7 @@ function element(kind, properties, ...children) {
 function save({ name, text }) {
   const address = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
   element("a", { href: address, download: name }).click();
-  setTimeout(() => URL.revokeObjectURL(address));
+  setTimeout(() => URL.revokeObjectURL(address), 60000); // the browser takes it in its own time
 }
 
 async function hand(model, file) {
