@@ -154,12 +154,12 @@ def count_fact(n: int, vigilance: float) -> str:
     >>> count_fact(80, 0.2)
     '80 categories at vigilance 0.2, the thesis printed 137 at 0.15'
     """
-    ours = f"{n} categor{'y' if n == 1 else 'ies'} at vigilance {vigilance:g}"
+    ours = f"{n:,} categor{'y' if n == 1 else 'ies'} at vigilance {vigilance:g}"
     if vigilance in THESIS_COUNTS:
-        return f"{ours}, the thesis printed {THESIS_COUNTS[vigilance]}"
+        return f"{ours}, the thesis printed {THESIS_COUNTS[vigilance]:,}"
     below = sorted(v for v in THESIS_COUNTS if v < vigilance)[-1:]
     above = sorted(v for v in THESIS_COUNTS if v > vigilance)[:1]
-    around = " and ".join(f"{THESIS_COUNTS[v]} at {v:g}" for v in below + above)
+    around = " and ".join(f"{THESIS_COUNTS[v]:,} at {v:g}" for v in below + above)
     return f"{ours}, the thesis printed {around}"
 
 

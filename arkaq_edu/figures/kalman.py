@@ -8,7 +8,7 @@ Examples
 --------
 >>> from matplotlib.figure import Figure
 >>> figure_2_22(Figure().subplots())
-Kalman filter model: x_k = A x_k-1 + B u_k-1 + w, seen as z_k = H x_k + v
+Kalman filter model: A and B move the state, noise shakes it; H shows it, with noise
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def figure_2_22(ax: Axes | None = None) -> Plot:
     >>> sorted(start for start, end in plot.arrows if end == "moves")
     ['A', 'B', 'w']
     """
-    title = "Kalman filter model: x_k = A x_k-1 + B u_k-1 + w, seen as z_k = H x_k + v"
+    title = "Kalman filter model: A and B move the state, noise shakes it; H shows it, with noise"
     ax = _canvas(ax, title, (-0.7, 10.9))
     ax.axvline(6.1, color=style.QUIET, linewidth=1, linestyle=":")
     for x, words, side in ((5.95, "hidden in the world", "right"), (6.25, "the sensor", "left")):
@@ -105,6 +105,8 @@ def figure_2_22(ax: Axes | None = None) -> Plot:
         marker, size, _ = _SHAPES[kind]
         ax.plot(x, y, marker, ms=size, mfc=style.CELLS[0], mec=style.INK)
         nodes[name] = write(ax, (x, y - 0.03), words, fontsize=10)
+    write(ax, (2.6, -2.3), r"$x_k = A\,x_{k-1} + B\,u_{k-1} + w$", fontsize=10)
+    write(ax, (8.6, -2.3), r"$z_k = H\,x_k + v$", fontsize=10)
     for noise, covariance in (("w", "$Q$"), ("v", "$R$")):
         x, y = MODEL[noise][2]
         write(ax, (x + 0.55, y - 0.4), covariance, fontsize=10)

@@ -8,7 +8,7 @@ Examples
 --------
 >>> from matplotlib.figure import Figure
 >>> figure_2_3(Figure().subplots())
-MDP in time: S_t and A_t decide over R_t and, by chance, over S_t+1
+MDP in time: state and action decide over the reward and, by chance, over the next state
 """
 
 from __future__ import annotations
@@ -65,7 +65,9 @@ def figure_2_3(ax: Axes | None = None) -> Plot:
     >>> sorted(start for start, end in plot.wires if end == "S_t+1")
     ['A_t', 'S_t']
     """
-    title = "MDP in time: S_t and A_t decide over R_t and, by chance, over S_t+1"
+    title = (
+        "MDP in time: state and action decide over the reward and, by chance, over the next state"
+    )
     ax = blank(ax, title, (-1.3, 9.9), (-3.4, 0.6))
     places: dict[str, Place] = {}
     flow: list[tuple[str, str]] = []
@@ -95,6 +97,7 @@ def figure_2_3(ax: Axes | None = None) -> Plot:
 
 _RADIUS = 0.42  # of a state
 _REACH = 1.15  # from the middle of a state to its choices
+_ALONG = np.linspace(0.0, 1.0, 25)[1:]  # parts of the way along an arrow
 
 
 def figure_2_4(ax: Axes | None = None, *, mdp: MDP | None = None) -> Plot:
@@ -179,10 +182,14 @@ def plot_transitions(
     taken = [*places, *spots.values()]
     (left, foot), (right, top) = np.min(taken, axis=0) - 1.2, np.max(taken, axis=0) + 1.2
     ax = blank(ax, title, (left, right), (foot, top))
+    curves = {(s, a, t): _curve(spots[s, a], places[t], s == t) for s, a, t in lines}
+    stalks = [np.linspace(places[s], spot, 9) for (s, _), spot in spots.items()]
+    drawn = np.concatenate([*stalks, *(curve(_ALONG) for curve in curves.values())])
     arrows = {
-        (s, a, t): _chance(ax, spots[s, a], places[t], mdp.T[a, s, t], s == t, taken)
-        for s, a, t in lines
+        (s, a, t): _chance(ax, curve, mdp.T[a, s, t], [*taken, *drawn])
+        for (s, a, t), curve in curves.items()
     }
+    taken += list(drawn)
     rewards = {
         pair: _spiral(ax, spot, mdp.R[pair], taken) for pair, spot in spots.items() if mdp.R[pair]
     }
@@ -195,8 +202,8 @@ def plot_transitions(
         for radius in (_RADIUS, _RADIUS - 0.07) if mdp.ends[s] else (_RADIUS,):
             circle = Circle(tuple(place), radius, facecolor=style.CELLS[0], edgecolor=style.INK)
             ax.add_patch(circle)
-    drawn = {s: write(ax, place, states[s]) for s, place in enumerate(places)}
-    return Plot(ax, states=drawn, choices=choices, arrows=arrows, rewards=rewards)
+    names = {s: write(ax, place, states[s]) for s, place in enumerate(places)}
+    return Plot(ax, states=names, choices=choices, arrows=arrows, rewards=rewards)
 
 
 def _circle(n: int) -> NDArray[np.float64]:
@@ -233,20 +240,24 @@ def _free(candidates: NDArray[np.float64], taken: list[NDArray[np.float64]]) -> 
     return taken[-1]
 
 
-def _chance(
-    ax: Axes, start: NDArray[np.float64], end: NDArray[np.float64], p: float, stays: bool,
-    taken: list[NDArray[np.float64]],
-) -> tuple[FancyArrowPatch, Text]:  # fmt: skip
-    """Draw an arrow from a choice to a state, and its probability where there is room."""
+def _curve(start: NDArray[np.float64], end: NDArray[np.float64], stays: bool) -> BezierSegment:
+    """Return the bent line from a choice to the rim of a state."""
     dx, dy = end - start
     pull = (start + end) / 2 + (0.55 if stays else 0.18) * np.array([dy, -dx])
     rim = end - _RADIUS * (end - pull) / np.hypot(*(end - pull))
-    curve = Path([start, pull, rim], [Path.MOVETO, Path.CURVE3, Path.CURVE3])
-    arrow = FancyArrowPatch(path=curve, arrowstyle="-|>", mutation_scale=12, color=style.INK)
+    return BezierSegment([start, pull, rim])
+
+
+def _chance(
+    ax: Axes, curve: BezierSegment, p: float, taken: list[NDArray[np.float64]]
+) -> tuple[FancyArrowPatch, Text]:
+    """Draw an arrow from a choice to a state, and its probability where there is room."""
+    path = Path(curve.control_points, [Path.MOVETO, Path.CURVE3, Path.CURVE3])
+    arrow = FancyArrowPatch(path=path, arrowstyle="-|>", mutation_scale=12, color=style.INK)
     ax.add_patch(arrow)
-    along = BezierSegment([start, pull, rim])(np.array([0.5, 0.42, 0.58, 0.34, 0.66, 0.2, 0.8]))
-    place = _free(along[:5], taken)
-    taken += list(along[5:])
+    own = {tuple(point) for point in curve(_ALONG)}
+    others = [point for point in taken if tuple(point) not in own]
+    place = _free(curve(np.linspace(0.25, 0.7, 19)), others)
     return arrow, write(ax, place, f"{p:.3g}", fontsize=8, bbox=style.white(0.8))
 
 

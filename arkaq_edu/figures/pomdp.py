@@ -226,12 +226,18 @@ def figure_2_11(ax: Axes | None = None) -> Plot:
         f"{len(V)} planes make a bowl: {V.value([1 / 3] * 3):.1f} where nothing is known, "
         f"{V.alphas.max():.1f} at the best corner"
     )
-    ax = blank(ax, title, (-1.2, 1.2), (-1.55, 1.35), size=(6.4, 5.4))
+    ax = blank(ax, title, (-1.4, 1.2), (-1.75, 1.45), size=(6.4, 6.0))
     colors = [POMDP_ACTIONS[pomdp.actions[V.actions[k]]] for k in seen.plans]
-    shadows = style.cells(seen.shadows, [style.paler(color, 0.55) for color in colors], ax)
+    shadows = style.cells(seen.shadows, [style.paler(color, 0.7) for color in colors], ax)
+    for value, (x, y) in zip(*seen.scale, strict=True):
+        ax.plot([x - 0.04, x], [y, y], color=style.QUIET, linewidth=1)
+        write(ax, (x - 0.07, y), f"{value:,g}", ha="right", color=style.QUIET)
+    if len(seen.scale[0]):
+        x, y = seen.scale[1].mean(axis=0)
+        write(ax, (x - 0.3, y), "value", rotation=90, color=style.QUIET)
     for (foot, top), name in zip(seen.corners, pomdp.states, strict=True):
         ax.plot(*np.transpose([foot, top]), ":", color=style.QUIET, linewidth=1, zorder=0.5)
-        write(ax, (top[0], top[1] + 0.07), name, va="bottom", fontsize=10)
+        write(ax, (top[0], top[1] + 0.09), name, va="bottom", fontsize=10)
     faces = style.cells(seen.faces, style.shaded(colors, seen.light), ax)
     for name in dict.fromkeys(pomdp.actions[a] for a in V.actions):
         ax.plot([], [], "s", color=POMDP_ACTIONS[name], label=name)
@@ -398,7 +404,7 @@ def figure_2_16(ax: Axes | None = None, *, p: float = 0.25) -> Plot:
     title = (
         f"b = [{probability(p)} {probability(1 - p)}]: "
         f"a1 earns {earned['a1']:.4g}, a2 {earned['a2']:.4g}; "
-        f"a1 is better for p(s1) > {f'{even:g}'.removeprefix('0')}, on the right"
+        f"a1 is better for $p(s_1)$ > {f'{even:g}'.removeprefix('0')}, on the right"
     )
     ax = _belief_axes(ax, pomdp, title)
     lines = {}
@@ -443,16 +449,16 @@ def figure_2_17(ax: Axes | None = None) -> Plot:
     --------
     >>> from matplotlib.figure import Figure
     >>> figure_2_17(Figure().subplots())
-    p_c is dominated only by p_a and p_b together, p_d by p_c alone
+    plan c is dominated only by a and b together, plan d by c alone
     """
     pomdp = problem("two_state")
     alphas = np.array([tree_value(pomdp, plan) for plan in PLANS.values()])
     names = list(PLANS)
     joint, alone = found = dominated(alphas)
-    both = " and ".join(f"p_{names[k]}" for k in joint.by)
+    both = " and ".join(names[k] for k in joint.by)
     title = (
-        f"p_{names[joint.index]} is dominated only by {both} together, "
-        f"p_{names[alone.index]} by p_{names[alone.by[0]]} alone"
+        f"plan {names[joint.index]} is dominated only by {both} together, "
+        f"plan {names[alone.index]} by {names[alone.by[0]]} alone"
     )
     ax = _belief_axes(ax, pomdp, title)
     colors = (style.INK, style.INK, style.OURS, style.ACTIONS["left"])
@@ -517,9 +523,12 @@ def plot_policy_graph(V: ValueFunction, pomdp: POMDP, ax: Axes | None = None) ->
             seen = np.flatnonzero(V.branches[k] == j)
             every = len(seen) == pomdp.n_observations
             name = "whatever" if every else " or ".join(pomdp.observations[z] for z in seen)
-            words(ax, (x + ahead, 0.45 * ahead + 0.25 * np.sign(ahead)), name)
+            side, length = np.sign(ahead), abs(2 * ahead)
+            words(ax, (x + ahead, side * (0.3 + _bend(length) * (length / 2 - 0.2))), name)
+    start = 2.0 * row.index(reached[0])
+    arrow(ax, (start - 0.62, 0.0), (start - 0.27, 0.0), color=style.QUIET)
     notes = (
-        ("start", (2.0 * row.index(reached[0]), -0.36), "center", "top"),
+        ("start", (start - 0.66, 0.0), "right", "center"),
         (f"surely {pomdp.states[1]}", (-0.7, -1.45), "left", "bottom"),
         (f"surely {pomdp.states[0]}", (2 * len(row) - 1.3, -1.45), "right", "bottom"),
     )
@@ -529,15 +538,24 @@ def plot_policy_graph(V: ValueFunction, pomdp: POMDP, ax: Axes | None = None) ->
 
 
 def _arc(ax: Axes, start: float, end: float) -> FancyArrowPatch:
-    """Draw an arrow along a row: to the right above it, to the left below it."""
+    """Draw an arrow along a row: to the right above it, to the left below it.
+
+    One from the next node ends farther out than one from afar, so that each has its own tip.
+    """
     side = float(np.sign(end - start))
-    tail, head = (start + 0.2 * side, 0.3 * side), (end - 0.3 * side, 0.3 * side)
-    return arrow(ax, tail, head, -0.45, shrinkA=2, shrinkB=2, linewidth=1.1)
+    before = 0.35 if abs(end - start) <= 2.0 else 0.05
+    tail, head = (start + 0.2 * side, 0.3 * side), (end - before * side, 0.3 * side)
+    return arrow(ax, tail, head, -_bend(abs(end - start)), shrinkA=2, shrinkB=2, linewidth=1.1)
+
+
+def _bend(length: float) -> float:
+    """Return how far an arrow bends: one to the next node stays below those from afar."""
+    return 0.3 if length <= 2.0 else 0.45
 
 
 def _belief_axes(ax: Axes | None, pomdp: POMDP, title: str) -> Axes:
     """Return axes of value over belief; p of the first state runs to the right."""
-    label = f"p({pomdp.states[0]})"
+    label = "$p(s_1)$" if pomdp.states[0] == "s1" else f"p({pomdp.states[0]})"
     ax = style.axes(ax, xlabel=label, ylabel="value", title=title, size=(6.4, 4.0))
     ax.set(xlim=(0, 1), xticks=np.linspace(0, 1, 6))
     return ax

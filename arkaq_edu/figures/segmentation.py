@@ -77,15 +77,17 @@ def figure_4_1(
 
     w1_x1 = np.array([before[0], after[0], patterns[0]])
     start, end, aim = np.degrees(np.arctan2(w1_x1[:, 1], w1_x1[:, 0]))
-    turn = f"w1 turns from {start:.0f}° to {end:.0f}°"
-    ax = _plane(ax, f"{times} times x1: {turn}, x1 lies at {aim:.0f}°")
+    turn = f"$w_1$ turns from {start:.0f}° to {end:.0f}°"
+    ax = _plane(ax, f"{times} times $x_1$: {turn}, $x_1$ lies at {aim:.0f}°")
     ax.add_patch(Circle((0, 0), 1, fill=False, color=style.QUIET, linewidth=0.8))
     old = _arrows(ax, before, style.QUIET)
     new = _arrows(ax, after, style.OURS)
     marks = style.measurements(patterns[:, 0], patterns[:, 1], ax)
-    _name(ax, before[:1], ["w1, t = 0"], style.QUIET)
-    _name(ax, after, ["w1, t = 1", "w2", "w3"], style.OURS)
-    _name(ax, patterns, ["x1", "x2"], style.INK)
+    _name(ax, before[:1], ["$w_1$, $t = 0$"], style.QUIET)
+    _name(ax, after[:1], ["$w_1$, $t = 1$"], style.OURS)
+    for place, name in zip(after[1:], ("$w_2$", "$w_3$"), strict=False):
+        style.tag(ax, place, name, (0, 6), color=style.OURS)
+    _name(ax, patterns, ["$x_1$", "$x_2$"], style.INK)
     ax.set(xlim=(-0.75, 1.5), ylim=(-0.15, 1.25))
     return Plot(ax, before=old, after=new, patterns=marks)
 
@@ -127,8 +129,8 @@ def figure_4_2(
     for i, pattern in enumerate(patterns, 1):
         n, gap = art.n_clusters_, np.linalg.norm(art.cluster_centers_ - pattern, axis=1).min()
         j = art.learn_one(pattern) + 1
-        place = f"m{j} moves it" if art.n_clusters_ == n else f"the nearest founds m{j}"
-        told.append(f"x{i} at {gap:.2f} from {place}")
+        place = f"$m_{j}$ moves it" if art.n_clusters_ == n else f"the nearest founds $m_{j}$"
+        told.append(f"$x_{i}$ at {gap:.2f} from {place}")
 
     ax = _plane(ax, "; ".join(told))
     reach = [Circle(tuple(m), vigilance, fill=False, color=style.QUIET, ls="--") for m in old]
@@ -138,9 +140,10 @@ def figure_4_2(
     (was,) = ax.plot(*old.T, "o", color=style.QUIET, markersize=5)
     (now,) = ax.plot(*new.T, "o", color=style.OURS, markersize=5)
     marks = style.measurements(patterns[:, 0], patterns[:, 1], ax, markersize=10)
-    _name(ax, old[:1], ["m1, t = 0"], style.QUIET, below=True)
-    _name(ax, new, ["m1, t = 1", "m2", "m3", "m4"], style.OURS, below=True)
-    _name(ax, patterns, ["x1", "x2"], style.INK)
+    _name(ax, old[:1], ["$m_1$, $t = 0$"], style.QUIET, below=True)
+    style.tag(ax, new[0], "$m_1$, $t = 1$", (-6, 4), color=style.OURS)
+    _name(ax, new[1:], ["$m_2$", "$m_3$", "$m_4$"], style.OURS, below=True)
+    _name(ax, patterns, ["$x_1$", "$x_2$"], style.INK)
     ax.set(xlim=(-0.15, 1.5), ylim=(-0.15, 1.1))
     return Plot(ax, before=was, after=now, reach=reach, patterns=marks)
 
@@ -225,8 +228,8 @@ def figure_5_9(
 ) -> Plot:
     """Draw figure 5.9, the templates of the angular network and the sectors they stand for.
 
-    The hollow mark is the thesis's example, a ball at 2100 mm and 0.3 rad. A ring marks the
-    template to which it belongs.
+    The cross is the thesis's example, a ball at 2,100 mm and 0.3 rad. A ring marks the template to
+    which it belongs.
 
     Parameters
     ----------
@@ -262,9 +265,12 @@ def figure_5_9(
     arrows = LineCollection([[middle, tip] for tip in tips], colors=style.INK, linewidths=1)
     plot.ax.add_collection(arrows, autolim=False)
     distance, orientation = ball = 2100.0, 0.3
-    example = style.measurements([orientation], [distance], plot.ax, marker="x")
+    seen = f"a ball at {distance:,.0f} mm, {orientation:g} rad"
+    example = style.measurements([orientation], [distance], plot.ax, marker="x", label=seen)
     x, y = tips[art.category(SENSING.scale(ball))]
-    chosen = style.measurements([x], [y], plot.ax, color=style.OURS, markersize=12)
+    ring = {"color": style.OURS, "markersize": 12, "label": "its template", "clip_on": False}
+    chosen = style.measurements([x], [y], plot.ax, **ring)
+    plot.ax.legend(loc="upper center", ncols=2, frameon=False, borderaxespad=0.1)
     marks: dict[str, Any] = {"templates": arrows, "example": example, "chosen": chosen}
     return Plot(plot.ax, cells=plot.cells, n_templates=n, **marks)
 

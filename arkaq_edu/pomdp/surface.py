@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 #: The corners of the triangle of beliefs in pictures of the bowl: about the origin, each 1 away.
 CENTERED = np.sqrt(3) * (to_triangle(np.eye(3)) - to_triangle(np.eye(3)).mean(axis=0))
 # The bowl is this high, its middle this far above the origin, the triangle this far below the bowl.
-RISE, MIDDLE, DROP = 0.8, 0.3, 0.85
+RISE, MIDDLE, DROP = 0.8, 0.45, 1.15
 # The direction the light comes from, on the picture as seen at azimuth 0: from the left, behind.
 LIGHT = np.array([-0.8, 0.6])
 
@@ -145,6 +145,9 @@ class Bowl(NamedTuple):
         How much light falls on each face, from 0 to 1.
     corners : ndarray, shape (3, 2, 2)
         For each state its corner of the triangle, and the point of the bowl above it.
+    scale : tuple of ndarray, shapes (n,) and (n, 2)
+        Round values, and where each is on the picture, above the leftmost corner. None where the
+        eye is so high that they would lie on each other.
     """
 
     plans: NDArray[np.intp]
@@ -152,6 +155,7 @@ class Bowl(NamedTuple):
     shadows: list[Floats]
     light: Floats
     corners: Floats
+    scale: tuple[Floats, Floats]
 
 
 def bowl(V: ValueFunction, azimuth: float, elevation: float) -> Bowl:
@@ -210,10 +214,21 @@ def bowl(V: ValueFunction, azimuth: float, elevation: float) -> Bowl:
     order = sorted(polygons, key=lambda k: -float(slopes[k] @ away))
     light = np.array([slopes[k] for k in order]) @ LIGHT
     floor, corners = low - DROP / scale, np.eye(3)
+    ticks = _round_values(low, high) if np.cos(up) > 0.4 else np.empty(0)
+    leftmost = corners[[(CENTERED @ right).argmin()] * len(ticks)]
     return Bowl(
         np.array(order),
         [seen(polygons[k], values[k]) for k in order],
         [seen(polygons[k], np.full(len(polygons[k]), floor)) for k in order],
         (light - light.min()) / max(np.ptp(light), 1e-9),
         np.stack([seen(corners, np.full(3, floor)), seen(corners, A.max(axis=0))], axis=1),
+        (ticks, seen(leftmost, ticks)),
     )
+
+
+def _round_values(low: float, high: float) -> Floats:
+    """Return three to six round values from low to high."""
+    rough = max(high - low, 1e-9) / 5
+    power = 10.0 ** np.floor(np.log10(rough))
+    step = next(power * n for n in (1, 2, 5, 10) if power * n >= rough)
+    return step * np.arange(np.ceil(low / step), np.floor(high / step + 1e-9) + 1)

@@ -11,6 +11,7 @@ from arkaq_edu.widgets.art import letters_explorer, resonance_explorer
 from arkaq_edu.widgets.belief import belief_explorer
 from arkaq_edu.widgets.explorer import Buttons, CanvasView, Drag, Explorer
 from arkaq_edu.widgets.field import control_panel
+from arkaq_edu.widgets.film import film_explorer
 from arkaq_edu.widgets.goal import scoring_explorer
 from arkaq_edu.widgets.kalman import kalman_explorer
 from arkaq_edu.widgets.learning import bandit_explorer, horizon_explorer
@@ -46,6 +47,7 @@ __all__ = [
     "belief_explorer",
     "bowl_explorer",
     "control_panel",
+    "film_explorer",
     "horizon_explorer",
     "kalman_explorer",
     "letters_explorer",

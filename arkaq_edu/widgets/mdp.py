@@ -158,13 +158,14 @@ def draw_life(steps: int, alpha: float | str, temperature: float) -> Scene:
 def _learned(life: Life, i: int) -> Panel:
     mean, spread = life.error.mean(axis=0)[1:], life.error.std(axis=0)[1:]
     k = np.array(STEPS[1:], dtype=float)
-    ends, heights = (90.0, 25_000.0), (0.0, 100.0)
+    top = max(100.0, 1.3 * float((mean + spread).max()))
+    ends, heights = (90.0, 25_000.0), (0.0, top)
     layers: list[Layer] = [
         Cells.band(k, mean, spread, (*ends, *heights)),
         Line(k, mean, style.OURS, 2.0),
         Points([max(STEPS[i], ends[0])], life.error[0, [i]], 4.5, style.INK),
-        Text(700, 94, f"{RUNS} robots ± 1 sigma", style.OURS),
-        Text(700, 87, "dot: the robot on the left"),
+        Text(700, 0.94 * top, f"{RUNS} robots ± 1 sigma", style.OURS),
+        Text(700, 0.87 * top, "dot: the robot on the left"),
     ]
     return Panel(
         "steps", "mean distance of max Q from V*", ends, heights, layers, log="x",

@@ -24,7 +24,7 @@ HORIZONS = range(1, 6)
 _FADED = 128  # more lines could not be distinguished
 _THIN = 0.01  # a face with a smaller area consists of its border only
 _FAINT = "#dcdcdc"
-_WINDOW = (-1.3, 1.3, -1.4, 1.4)  # of the bowl
+_WINDOW = (-1.4, 1.3, -1.65, 1.5)  # of the bowl
 
 
 def value_explorer() -> Explorer:
@@ -222,13 +222,19 @@ def draw_bowl(horizon: int, view: tuple[float, float]) -> Scene:
     colors = [own[k] for k in seen.plans]
     bright = style.shaded(colors, seen.light)
     layers: list[Layer] = [
-        _cells(seen.shadows, [style.paler(color, 0.55) for color in colors]),
+        _cells(seen.shadows, [style.paler(color, 0.7) for color in colors]),
         *(Line(post[:, 0], post[:, 1], style.QUIET, 1.0, dashed=True) for post in seen.corners),
         *_edges(seen.faces, bright),
         _cells(seen.faces, bright),
     ]
+    for value, (x, y) in zip(*seen.scale, strict=True):
+        layers.append(Line([x - 0.04, x], [y, y], style.QUIET, 1.0))
+        layers.append(Text(x - 0.13, y, f"{value:,g}", style.QUIET, "center"))
+    if len(seen.scale[0]):
+        x, y = seen.scale[1].mean(axis=0)
+        layers.append(Text(x - 0.36, y, "value", style.QUIET, "center"))
     for (_, (x, y)), name in zip(seen.corners, pomdp.states, strict=True):
-        layers.append(Text(x, y + 0.09, name, style.INK, "center"))
+        layers.append(Text(x, y + 0.16, name, style.INK, "center"))
     flat: list[Layer] = [_cells(above.shadows, [own[k] for k in above.plans])]
     for (x, y), name in zip(1.12 * CENTERED, pomdp.states, strict=True):
         flat.append(Text(x, y, name, style.INK, "center"))

@@ -33,6 +33,7 @@ from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
 from arkaq_edu.figures.drawing import style
+from arkaq_edu.figures.drawing.style import tick_label
 
 #: Left, right, bottom and top of a part of a panel, in the units of its axes.
 Window = tuple[float, float, float, float]
@@ -384,17 +385,6 @@ def area(x: ArrayLike, low: ArrayLike, high: ArrayLike) -> NDArray[np.float64]:
     """
     x, low, high = (np.asarray(values) for values in (x, low, high))
     return np.column_stack([np.append(x, x[::-1]), np.append(high, low[::-1])])
-
-
-def tick_label(value: float) -> str:
-    """Return the number of a tick as it is written beside the axis.
-
-    Examples
-    --------
-    >>> tick_label(2000.0), tick_label(-0.2), tick_label(0.0)
-    ('2,000', '−0.2', '0')
-    """
-    return f"{value:,.10g}".replace("-", "−")
 
 
 def _ticks(given: Sequence[float] | None, limits: tuple[float, float]) -> list[float]:

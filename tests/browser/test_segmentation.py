@@ -7,13 +7,13 @@ from playwright.sync_api import expect
 from tests.browser.reading import BROKEN, OUTPUTS, assert_sound, errors, picture, slider_of
 
 NOTEBOOK = "07_state_segmentation.ipynb"
-FACT = re.compile(r"^(\d+) categories at vigilance ([\d.]+?)[,;]")
+FACT = re.compile(r"^([\d,]+) categories at vigilance ([\d.]+?)[,;]")
 
 
 def fact(canvas):
     """The count and the vigilance that the canvas states."""
     count, vigilance = FACT.match(canvas.get_attribute("aria-label")).groups()
-    return int(count), float(vigilance)
+    return int(count.replace(",", "")), float(vigilance)
 
 
 def test_runs_and_follows_the_keyboard(open_notebook):

@@ -327,6 +327,8 @@ def test_a_walk_is_kept_as_a_small_gif_with_a_frame_a_look(short_walk, tmp_path)
     assert len(frames) == len(short_walk.table)
     assert min(abs(b - a).max() for a, b in itertools.pairwise(frames)) > 50, "it moves"
     assert (tmp_path / "walk.GIF").stat().st_size / len(frames) * 40 < 3e6
+    with Image.open(tmp_path / "walk.GIF") as film:
+        assert "loop" not in film.info, "it plays once"
 
 
 def test_a_walk_is_kept_as_a_page_that_needs_no_network(short_walk, tmp_path):
@@ -345,6 +347,8 @@ def test_a_walk_moves_in_a_notebook(short_walk, tmp_path):
     moving = animation.Film(short_walk)
     (tmp_path / "walk.png").write_bytes(moving._repr_png_())
     assert len(frames_of(tmp_path / "walk.png")) == len(short_walk.table)
+    with Image.open(tmp_path / "walk.png") as film:
+        assert film.info["loop"] == 1, "it plays once"
     assert repr(moving) == short_walk.summary
 
 

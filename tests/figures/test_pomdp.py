@@ -155,6 +155,11 @@ def test_figure_2_11_has_seven_planes_and_is_low_where_nothing_is_known(ax):
         f"7 planes make a bowl: {middle:.1f} where nothing is known, "
         f"{corners.max():.1f} at the best corner"
     )
+    lowest = min(path.vertices[:, 1].min() for path in plot.faces.get_paths())
+    shadow = max(path.vertices[:, 1].max() for path in plot.shadows.get_paths())
+    assert shadow < lowest, "the shadow lies apart, below the bowl"
+    numbers = {text.get_text() for text in ax.texts}
+    assert numbers >= {"2", "3", "4", "5", "value"}, "a scale of heights"
     colors = {tuple(c) for c in plot.faces.get_facecolor().round(3)}
     assert len(colors) == 7, "shaded, so that planes of one action can be told apart"
 

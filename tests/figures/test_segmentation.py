@@ -68,7 +68,8 @@ def test_a_figure_prints_the_thesiss_count_and_ours(vigilance):
     plot = FIGURES[vigilance](Figure().subplots(), patterns=patterns, learning_rate=0.4)
     ours, thesis = leader_count(patterns, vigilance, 0.4), THESIS_COUNTS[vigilance]
     assert plot.n_centers == ours == len(plot.centers.get_xdata()) == len(plot.cells.get_paths())
-    assert repr(plot) == f"{ours} categories at vigilance {vigilance}, the thesis printed {thesis}"
+    counted = f"{ours:,} categories at vigilance {vigilance}"
+    assert repr(plot) == f"{counted}, the thesis printed {thesis:,}"
 
 
 def test_a_figure_makes_its_own_axes_and_shows_nothing(monkeypatch):

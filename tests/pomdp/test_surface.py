@@ -108,3 +108,15 @@ def _covers(polygon, point):
     gaps = point - polygon
     turns = edges[:, 0] * gaps[:, 1] - edges[:, 1] * gaps[:, 0]
     return (turns > 0).all() or (turns < 0).all()
+
+
+def test_the_scale_measures_the_height_of_the_bowl():
+    V = solved("three_places", 2)
+    seen = bowl(V, 46.0, 38.0)
+    values, places = seen.scale
+    assert values.tolist() == [2, 3, 4, 5]
+    (x, top), *_ = sorted(seen.corners[:, 1].tolist())  # the leftmost corner of the bowl
+    assert places[:, 0] == pytest.approx([x] * 4)
+    assert places[-1, 1] == pytest.approx(top), "the corners are worth 5"
+    assert np.ptp(np.diff(places[:, 1])) == pytest.approx(0)
+    assert len(bowl(V, 46.0, 80.0).scale[0]) == 0, "from high up there is no height to read"

@@ -23,8 +23,8 @@ def explored():
 
 def stated(explored):
     """The count, the coverage (%) and the error that an explorer states."""
-    fact = r"(\d+) categor(?:y|ies) at vigilance .*; coverage ([\d.]+) %, error ([\d.]+)"
-    return [float(x) for x in re.fullmatch(fact, repr(explored)).groups()]
+    fact = r"([\d,]+) categor(?:y|ies) at vigilance .*; coverage ([\d.]+) %, error ([\d.]+)"
+    return [float(x.replace(",", "")) for x in re.fullmatch(fact, repr(explored)).groups()]
 
 
 def leaders(patterns, vigilance, eta):

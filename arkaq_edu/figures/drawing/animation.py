@@ -12,6 +12,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
+from PIL import Image, ImageSequence
 
 from arkaq_edu._files import replacing
 from arkaq_edu.envs.ball_approach import ACTIONS
@@ -141,6 +143,30 @@ def _animate_shot(shot: Shot) -> FuncAnimation:
     return _film(figure, shot.summary, (0.01, 0.99), len(shot.frames), draw)
 
 
+def frames(episode: Trajectory | Shot) -> list[NDArray[np.uint8]]:
+    """Return the pictures of a film, each of shape (rows, columns, 3).
+
+    Parameters
+    ----------
+    episode : Trajectory or Shot
+        See `animate`.
+
+    Examples
+    --------
+    >>> from arkaq_edu.experiments import approach
+    >>> walked = approach.trajectory(1)
+    >>> pictures = frames(walked)
+    >>> len(pictures) == len(walked.table), pictures[0].shape
+    (True, (272, 560, 3))
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "frames.png"
+        animate(episode).save(path, _Once(FRAMES_PER_SECOND), dpi=_DPI)
+        with Image.open(path) as film:
+            each = [np.asarray(picture.convert("RGB")) for picture in ImageSequence.Iterator(film)]
+    return each
+
+
 def save_film(episode: Trajectory | Shot, path: str | os.PathLike[str]) -> None:
     """Write the film of an episode to a file, which opens offline.
 
@@ -149,8 +175,8 @@ def save_film(episode: Trajectory | Shot, path: str | os.PathLike[str]) -> None:
     episode : Trajectory or Shot
         See `animate`.
     path : path
-        Ends in ".gif" (a picture) or ".html" (a page with buttons and a slider). An existing file
-        is replaced.
+        Ends in ".gif" (a picture that plays once) or ".html" (a page with buttons and a slider, to
+        step through it). An existing file is replaced.
 
     Raises
     ------
@@ -169,14 +195,24 @@ def save_film(episode: Trajectory | Shot, path: str | os.PathLike[str]) -> None:
         raise ValueError(f"path must end in .gif or .html, got {os.fspath(path)!r}")
     with replacing(path) as fresh:
         if ending == ".gif":
-            animate(episode).save(fresh, PillowWriter(FRAMES_PER_SECOND), dpi=_DPI)
+            animate(episode).save(fresh, _Once(FRAMES_PER_SECOND), dpi=_DPI)
         else:
             fresh.write_text(_page(animate(episode), episode.summary), encoding="utf-8")
 
 
+class _Once(PillowWriter):
+    """A writer of pictures that play once, and then show their last frame."""
+
+    def finish(self) -> None:
+        first, *others = self._frames
+        once = {"loop": 1} if Path(self.outfile).suffix == ".png" else {}
+        pause = 1000 // self.fps
+        first.save(self.outfile, save_all=True, append_images=others, duration=pause, **once)
+
+
 def _page(animation: FuncAnimation, title: str) -> str:
     """Return matplotlib's page, the same in every run, with signs that need no network."""
-    page = animation.to_jshtml(FRAMES_PER_SECOND, embed_frames=True)
+    page = animation.to_jshtml(FRAMES_PER_SECOND, embed_frames=True, default_mode="once")
     page = re.sub(r"<link[^>]*font-awesome[^>]*>", "", page)
     page = re.sub(r"(anim|_anim_\w*?)[0-9a-f]{32}", r"\1_walk", page)
     signs = "".join(f'.fa-{name}::before {{content: "{sign}"}}\n' for name, sign in _SIGNS.items())
@@ -187,7 +223,9 @@ def _page(animation: FuncAnimation, title: str) -> str:
 
 @dataclass(frozen=True)
 class Film:
-    """A film that plays in a notebook, and in a stored one without a kernel too.
+    """A film that plays once in a notebook, and in a stored one without a kernel too.
+
+    `arkaq_edu.widgets.film_explorer` steps through it.
 
     Parameters
     ----------
@@ -208,8 +246,8 @@ class Film:
         return self.episode.summary
 
     def _repr_png_(self) -> bytes:
-        """Return a PNG of many frames, which browsers play."""
+        """Return a PNG of many frames, which browsers play once."""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "frames.png"
-            animate(self.episode).save(path, PillowWriter(FRAMES_PER_SECOND), dpi=_DPI)
+            animate(self.episode).save(path, _Once(FRAMES_PER_SECOND), dpi=_DPI)
             return path.read_bytes()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from typing import Any
 
@@ -77,7 +78,18 @@ def fact_of(figure: Figure) -> str:
 
 
 def _titles(axes: Any) -> str:
-    return "; ".join(filter(None, (ax.get_title(loc="left") for ax in axes)))
+    return plain("; ".join(filter(None, (ax.get_title(loc="left") for ax in axes))))
+
+
+def plain(text: str) -> str:
+    """Return a text without the signs that set its mathematics.
+
+    Examples
+    --------
+    >>> plain("$x_1$ founds $m_{12}$")
+    'x1 founds m12'
+    """
+    return re.sub(r"\$(.*?)\$", lambda found: re.sub(r"[_{}]", "", found[1]), text)
 
 
 def describe_pictures() -> None:

@@ -28,7 +28,11 @@ from matplotlib.axes import Axes
 from matplotlib.collections import FillBetweenPolyCollection, PolyCollection
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.lines import Line2D
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
 from matplotlib.text import Annotation
+from matplotlib.ticker import FuncFormatter, ScalarFormatter
+from matplotlib.transforms import Affine2D, ScaledTranslation
 from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu.figures.drawing.plot import describe_pictures
@@ -61,6 +65,15 @@ SERIES = (QUIET, ACTIONS["left"], ACTIONS["right"], ACTIONS["forward"], OURS)
 VIEW_ORIENTATION = (0.5, -0.5)
 VIEW_DISTANCE = (0.0, 4500.0)
 
+# The robot from above, looking upward: shoulders, two arms and the head, in points.
+_ROBOT = [
+    Path.unit_circle().transformed(Affine2D().scale(*size).translate(*middle))
+    for size, middle in (
+        ((1.7, 3.6), (-7.6, 2.4)), ((1.7, 3.6), (7.6, 2.4)), ((8.5, 3.2), (0.0, 0.0)),
+        ((3.8, 3.8), (0.0, 1.2)),
+    )
+]  # fmt: skip
+
 
 def axes(
     ax: Axes | None = None, *, xlabel: str = "", ylabel: str = "", title: str = "",
@@ -92,11 +105,27 @@ def axes(
     ax.set_title(title, loc="left", fontsize="medium", color=INK)
     ax.spines[["top", "right"]].set_visible(False)
     ax.tick_params(colors=INK)
+    for axis in (ax.xaxis, ax.yaxis):
+        if isinstance(axis.get_major_formatter(), ScalarFormatter):
+            axis.set_major_formatter(FuncFormatter(lambda value, _: tick_label(round(value, 10))))
     return ax
+
+
+def tick_label(value: float) -> str:
+    """Return the number of a tick as it is written beside the axis.
+
+    Examples
+    --------
+    >>> tick_label(2000.0), tick_label(-0.2), tick_label(-0.0)
+    ('2,000', '−0.2', '0')
+    """
+    return f"{value + 0.0:,.10g}".replace("-", "−")
 
 
 def view_axes(ax: Axes | None = None, *, title: str = "") -> Axes:
     """Return `axes` of the robot's view: orientation (rad, left on the left) by distance (mm).
+
+    The robot itself is at the foot of the picture, at (0, 0).
 
     Examples
     --------
@@ -107,6 +136,12 @@ def view_axes(ax: Axes | None = None, *, title: str = "") -> Axes:
     xlabel = "ball to the left  |  to the right (rad)"
     ax = axes(ax, xlabel=xlabel, ylabel="distance (mm)", title=title)
     ax.set(xlim=VIEW_ORIENTATION, ylim=VIEW_DISTANCE)
+    figure = ax.get_figure(root=True)
+    points = Affine2D().scale(1 / 72) + figure.dpi_scale_trans
+    here = points + ScaledTranslation(0.0, 0.0, ax.transData)
+    look: dict[str, Any] = {"facecolor": "white", "edgecolor": INK, "linewidth": 0.8}
+    for part in _ROBOT:
+        ax.add_artist(PathPatch(part, transform=here, clip_on=False, zorder=4, **look))
     return ax
 
 
