@@ -158,7 +158,7 @@ def draw_life(steps: int, alpha: float | str, temperature: float) -> Scene:
 def _learned(life: Life, i: int) -> Panel:
     mean, spread = life.error.mean(axis=0)[1:], life.error.std(axis=0)[1:]
     k = np.array(STEPS[1:], dtype=float)
-    top = max(100.0, 1.3 * float((mean + spread).max()))
+    top = max(100.0, 1.3 * float(max((mean + spread).max(), life.error[0].max())))
     ends, heights = (90.0, 25_000.0), (0.0, top)
     layers: list[Layer] = [
         Cells.band(k, mean, spread, (*ends, *heights)),
