@@ -184,7 +184,7 @@ def plot_transitions(
     ax = blank(ax, title, (left, right), (foot, top))
     curves = {(s, a, t): _curve(spots[s, a], places[t], s == t) for s, a, t in lines}
     stalks = [np.linspace(places[s], spot, 9) for (s, _), spot in spots.items()]
-    drawn = np.concatenate([*stalks, *(curve(_ALONG) for curve in curves.values())])
+    drawn = np.concatenate([places, *stalks, *(curve(_ALONG) for curve in curves.values())])
     arrows = {
         (s, a, t): _chance(ax, curve, mdp.T[a, s, t], [*taken, *drawn])
         for (s, a, t), curve in curves.items()
@@ -202,8 +202,8 @@ def plot_transitions(
         for radius in (_RADIUS, _RADIUS - 0.07) if mdp.ends[s] else (_RADIUS,):
             circle = Circle(tuple(place), radius, facecolor=style.CELLS[0], edgecolor=style.INK)
             ax.add_patch(circle)
-    names = {s: write(ax, place, states[s]) for s, place in enumerate(places)}
-    return Plot(ax, states=names, choices=choices, arrows=arrows, rewards=rewards)
+    named = {s: write(ax, place, states[s]) for s, place in enumerate(places)}
+    return Plot(ax, states=named, choices=choices, arrows=arrows, rewards=rewards)
 
 
 def _circle(n: int) -> NDArray[np.float64]:

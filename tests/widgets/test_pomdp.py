@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from arkaq_edu.figures.drawing.style import POMDP_ACTIONS
+from arkaq_edu.figures.drawing.style import POMDP_ACTIONS, QUIET
 from arkaq_edu.pomdp import all_trees, problem, solve_pomdp, tree_value
 from arkaq_edu.widgets import bowl_explorer, pomdp, value_explorer
 from arkaq_edu.widgets.scene import Cells, Line, Points, Text
@@ -149,7 +149,7 @@ def test_a_plane_seen_edge_on_is_a_line(horizon):
         turned, _ = pomdp.draw_bowl(horizon, view).panels
         lines = [x for x in turned.layers if isinstance(x, Line)]
         post = min((x for x in lines if x.dashed), key=lambda line: line.x[0])
-        return [x for x in lines if not x.dashed and min(x.x) < post.x[0] + 1e-6]
+        return [x for x in lines if x.color != QUIET and min(x.x) < post.x[0] + 1e-6]
 
     assert len(beyond((-150, 0))) == 1
     assert beyond((-150, 38)) == []

@@ -8,6 +8,7 @@ import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.animation import FuncAnimation, PillowWriter
@@ -203,9 +204,11 @@ def save_film(episode: Trajectory | Shot, path: str | os.PathLike[str]) -> None:
 class _Once(PillowWriter):
     """A writer of pictures that play once, and then show their last frame."""
 
+    _frames: list[Image.Image]
+
     def finish(self) -> None:
         first, *others = self._frames
-        once = {"loop": 1} if Path(self.outfile).suffix == ".png" else {}
+        once: dict[str, Any] = {"loop": 1} if Path(self.outfile).suffix == ".png" else {}
         pause = 1000 // self.fps
         first.save(self.outfile, save_all=True, append_images=others, duration=pause, **once)
 

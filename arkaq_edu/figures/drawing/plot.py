@@ -89,7 +89,9 @@ def plain(text: str) -> str:
     >>> plain("$x_1$ founds $m_{12}$")
     'x1 founds m12'
     """
-    return re.sub(r"\$(.*?)\$", lambda found: re.sub(r"[_{}]", "", found[1]), text)
+    parts = text.split("$")
+    parts[1::2] = [re.sub(r"[_{}]", "", part) for part in parts[1::2]]
+    return "".join(parts)
 
 
 def describe_pictures() -> None:

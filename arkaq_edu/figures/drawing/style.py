@@ -136,9 +136,10 @@ def view_axes(ax: Axes | None = None, *, title: str = "") -> Axes:
     xlabel = "ball to the left  |  to the right (rad)"
     ax = axes(ax, xlabel=xlabel, ylabel="distance (mm)", title=title)
     ax.set(xlim=VIEW_ORIENTATION, ylim=VIEW_DISTANCE)
-    figure = ax.get_figure(root=True)
-    points = Affine2D().scale(1 / 72) + figure.dpi_scale_trans
-    here = points + ScaledTranslation(0.0, 0.0, ax.transData)
+    figure: Any = ax.get_figure(root=True)
+    points: Any = Affine2D().scale(1 / 72) + figure.dpi_scale_trans
+    data: Any = ax.transData
+    here = points + ScaledTranslation(0.0, 0.0, data)
     look: dict[str, Any] = {"facecolor": "white", "edgecolor": INK, "linewidth": 0.8}
     for part in _ROBOT:
         ax.add_artist(PathPatch(part, transform=here, clip_on=False, zorder=4, **look))
