@@ -73,7 +73,7 @@ grading: $(BIN)/uv
 
 # Every chapter of the student's copy in a real Chromium, blank, and one exercise solved.
 student: $(READY)
-	EVERY_CHAPTER=1 $(BIN)/python -m pytest tests/browser/test_student.py
+	EVERY_CHAPTER=1 $(BIN)/python -m pytest tests/browser/student.py
 
 # The list of known mistakes in TEACHING.md comes from the exercises' own tables.
 teaching: $(READY)

@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 
 from arkaq_edu import experiments, figures, pomdp
-from arkaq_edu._paths import copy_course, course_folder
+from arkaq_edu._copy import copy_course, course_folder
 from arkaq_edu.arkaq import Arkaq
 from arkaq_edu.figures.report import write_report
 
@@ -20,10 +20,8 @@ _spec = importlib.util.spec_from_file_location("store", course_folder() / "noteb
 store = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(store)
 
-RESULTS = pd.DataFrame(
-    [["centers", 137, 150, 147, 153, 20]] * 20,
-    columns=["quantity", "thesis", "mean", "low", "high", "seeds"],
-)
+RUNS = pd.DataFrame({"quantity": "centers, vigilance 0.15", "seed": range(20), "value": 150.0})
+MEASURED = experiments.reproduce.Measurements(RUNS, pd.DataFrame())
 
 
 def store_notebook(path):
@@ -42,8 +40,8 @@ WRITERS = {
     "model.pomdp": lambda path: pomdp.write_pomdp(pomdp.problem("tiger"), path),
     "picture.png": lambda path: figures.draw("5.6", path),
     "picture.svg": lambda path: figures.draw("5.6", path),
-    "results.csv": lambda path: write_report(path.parent, RESULTS, {}),
-    "index.html": lambda path: write_report(path.parent, RESULTS, {}),
+    "results.csv": lambda path: experiments.reproduce.write(path.parent, MEASURED, {}),
+    "index.html": lambda path: write_report(path.parent, experiments.judge(RUNS), {}),
     "film.gif": lambda path: figures.save_film(film(), path),
     "film.html": lambda path: figures.save_film(film(), path),
     "page.ipynb": store_notebook,

@@ -7,7 +7,7 @@ from tests.soak.command import stopped, without_bars
 INTERRUPTED = (130, ["arkaq: interrupted"])
 
 
-@pytest.mark.parametrize("seconds", [0.0, 0.1, 0.4, 1.0])
+@pytest.mark.parametrize("seconds", [0.05, 0.1, 0.4, 1.0])
 def test_ctrl_c_in_the_first_moments(tmp_path, seconds):
     ended = stopped(["train"], tmp_path, seconds)
     assert (ended.status, without_bars(ended.said)) == INTERRUPTED

@@ -86,7 +86,7 @@ def progress(chapter: str | None = None) -> None:
     Examples
     --------
     >>> progress("art")  # doctest: +ELLIPSIS
-    art: ... of 3 exercises solved...
+    art: ... of 4 exercises solved...
     """
     done = solved.names()
     for name in CHAPTERS if chapter is None else [choice("chapter", chapter, CHAPTERS)]:

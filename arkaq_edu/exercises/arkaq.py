@@ -24,9 +24,8 @@ def decide(pattern, centers, Q):
 
 def _inside(rng: np.random.Generator) -> Draws:
     return [
-        (rng.uniform(-1, 1, 2), rows, columns)
-        for rows, columns in rng.integers(2, 12, (40, 2)).tolist()
-        if rows != columns
+        (rng.uniform(-1, 1, 2), rows, rows + more)
+        for rows, more in rng.integers([2, 1], [9, 4], (40, 2)).tolist()
     ]
 
 

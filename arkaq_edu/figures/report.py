@@ -319,7 +319,7 @@ def _whose(number: str, taken: Mapping[str, Any], seeds: int) -> str:
 
 def _differences(number: str, results: pd.DataFrame) -> str:
     """List what the thesis prints in a figure, with the verdicts."""
-    own = results[[_shows(place, number) for place in results.place]]
+    own = results[[number != SEARCH and _shows(place, number) for place in results.place]]
     items = "".join(
         f'<li><a href="#{anchor(row.quantity)}">{escape(row.quantity)}</a>: thesis '
         f"{escape(row.thesis)}, here {_number(row)} {_chip(row.verdict)}</li>"

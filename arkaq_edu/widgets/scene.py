@@ -360,7 +360,9 @@ class Scene:
         picture = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
         file = io.BytesIO()
         # These pictures have few colors: a palette takes a quarter of the bytes and looks the same.
-        picture.quantize(128, dither=Image.Dither.NONE).save(file, "PNG", optimize=True)
+        # It must hold the rare ones too: a far ball is a few orange pixels.
+        few = picture.quantize(128, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+        few.save(file, "PNG", optimize=True)
         return file.getvalue()
 
 

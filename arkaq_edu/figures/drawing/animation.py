@@ -239,7 +239,7 @@ class Film:
     --------
     >>> from arkaq_edu.experiments import goal
     >>> Film(goal.record_episode(goal.load_agent(), orientation=-0.3))
-    the goal 0.30 rad right, 1 turn: a goal
+    the goal 0.30 rad right, 2 turns: a goal
     """
 
     episode: Trajectory | Shot

@@ -1,6 +1,6 @@
 """The student's way in: `arkaq lab` in a fresh clone, every exercise blank, then one solved.
 
-In CI one chapter is tried; `make student` tries all.
+`make student` tries every chapter, which takes a while; without EVERY_CHAPTER it is one.
 """
 
 import os
