@@ -30,10 +30,10 @@ CLOCK = """(canvas) => {
 SHOWN = "(n) => times.length > n"
 
 
-def test_every_slider_is_followed_in_time(open_notebook, capsys):
+def test_every_slider_is_followed_in_time(open_cells, capsys):
     names = list(widgets.EXPLORERS)
     made = [f'widgets.EXPLORERS["{name}"]()' for name in names]
-    page = open_notebook("latency.ipynb", cells=["from arkaq_edu import widgets", *made])
+    page = open_cells("from arkaq_edu import widgets", *made)
     assert_sound(page)
     slow = []
     for i, name in enumerate(names):
