@@ -24,7 +24,7 @@ HAVE_NUMBA = numba is not None
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """Return `function` compiled (nopython mode, cached on disk), or unchanged without numba.
 
-    Floating-point operations keep their order (no ``fastmath``), so compiled and plain runs give
+    Kernels of several threads run at the same time. Floating-point operations keep their order (no ``fastmath``), so compiled and plain runs give
     exactly the same numbers.
 
     Examples
@@ -42,7 +42,8 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     if numba is None:
         return function
     # A function typed at a prompt has no file beside which its machine code could be cached.
-    return numba.njit(cache=os.path.exists(function.__code__.co_filename))(function)
+    cached = os.path.exists(function.__code__.co_filename)
+    return numba.njit(cache=cached, nogil=True)(function)
 
 
 def word_before_compiling(function: Callable[..., Any], what: str) -> None:
