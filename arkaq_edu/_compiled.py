@@ -24,8 +24,8 @@ HAVE_NUMBA = numba is not None
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """Return `function` compiled (nopython mode, cached on disk), or unchanged without numba.
 
-    Kernels of several threads run at the same time. Floating-point operations keep their order (no ``fastmath``), so compiled and plain runs give
-    exactly the same numbers.
+    Kernels of several threads run at the same time. Floating-point operations keep their order (no
+    ``fastmath``), so compiled and plain runs give exactly the same numbers.
 
     Examples
     --------
