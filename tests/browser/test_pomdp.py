@@ -55,7 +55,7 @@ def test_runs_and_follows_the_mouse_and_the_keys(open_notebook):
     expect(bowl).to_have_attribute("aria-label", re.compile("7 planes, .*seen from 46°, 38° up$"))
     drawn = picture(bowl)
     width, height = drag(page, bowl, (0.3, 0.5), (0.4, 0.65))
-    unit = min(width * 1.2 / 2.2 / 2.6, height / 2.8)
+    unit = min(width * 1.2 / 2.2 / 2.7, height / 3.15)
     azimuth = 2 * round((46 + 60 * 0.1 * width / unit) / 2)
     elevation = 2 * round((38 + 60 * 0.15 * height / unit) / 2)
     turned = re.compile(f"from {azimuth}°, {elevation}° up")

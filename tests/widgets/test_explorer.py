@@ -16,6 +16,7 @@ from IPython.core.formatters import DisplayFormatter
 from PIL import Image
 
 import arkaq_edu.widgets
+from arkaq_edu.experiments import approach
 from arkaq_edu.widgets import Buttons, CanvasView, Drag, Explorer
 from arkaq_edu.widgets import explorer as module
 from arkaq_edu.widgets.explorer import slider
@@ -157,10 +158,16 @@ def test_the_script_tells_all_that_a_drag_reads():
 
 # --- closed is closed -----------------------------------------------------------------------------
 
-MAKERS = [
+
+def film():
+    return arkaq_edu.widgets.film_explorer(approach.trajectory(1))
+
+
+MAKERS = [film] + [
     getattr(arkaq_edu.widgets, name)
     for name in arkaq_edu.widgets.__all__
     if name.endswith("_explorer") or name == "control_panel"
+    if name != "film_explorer"  # it needs an episode: see above
 ]
 
 
