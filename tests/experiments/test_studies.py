@@ -26,12 +26,11 @@ from arkaq_edu.mdp import speed_of_convergence
 
 ROOT = Path(__file__).parents[2]
 BRIEF = {"patterns": 60, "exploration": 40, "exploitation": 40, "episodes": 3}
-GRID = {"learner": ["QLearning", "Sarsa"]}
+GRID = {"vigilance": [0.05, 0.06, 0.075], "learner": ["QLearning", "Sarsa"]}
 
 
-def draw(seed, mean=0.0, wait=0.0, learner=""):
+def draw(seed, mean=0.0, other=0.0, learner=""):
     """Measure nothing but the settings and the seed."""
-    time.sleep(wait)
     x = float(np.random.default_rng(seed).normal(mean))
     return {"x": x, "missing": np.nan}
 
@@ -55,19 +54,9 @@ def never(seed):
     return {"x": 1.0}
 
 
-def small_agents(folder, jobs):
-    study(GRID, 1, task="goal", settings=BRIEF, folder=folder, jobs=jobs, progress=False)
+def agents(folder, jobs):
+    study(GRID, 5, task="goal", settings=BRIEF, folder=folder, jobs=jobs, progress=False)
     return (folder / "results.csv").read_bytes()
-
-
-def test_agents_are_the_same_bytes_on_one_process_and_on_two(tmp_path):
-    one, two = small_agents(tmp_path / "one", 1), small_agents(tmp_path / "two", 2)
-    assert one == two
-    # Every cell is what one agent, trained by itself, measures.
-    table = pd.read_csv(tmp_path / "one" / "results.csv")
-    cell = table.query("learner == 'Sarsa' and seed == 0")
-    alone = measure("goal", 0, learner="Sarsa", **BRIEF)
-    assert dict(zip(cell.quantity, cell.value, strict=True)) == alone
 
 
 def start(*words):
@@ -76,22 +65,20 @@ def start(*words):
     return subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL)
 
 
-def test_a_worker_killed_in_the_middle_changes_nothing(tmp_path):
+def agents_on_dask_with_a_worker_killed(folder, own):
+    """Return the bytes, how many cells were there at the kill, and how many workers lived."""
     from dask.distributed import Client
 
-    grid = {"mean": [0.05, 0.1, 0.2], "learner": ["QLearning", "Sarsa"]}
-    here, there = tmp_path / "here", tmp_path / "there"
-    study(grid, 5, task=draw, folder=here, jobs=1, progress=False)
-    file = tmp_path / "scheduler.json"
+    file = own / "scheduler.json"
     common = ("--no-dashboard", "--scheduler-file", str(file))
-    own = ("--no-nanny", "--nthreads", "1", "--local-directory", str(tmp_path))
+    alone = ("--no-nanny", "--nthreads", "1", "--local-directory", str(own))
     processes = [start("scheduler", "--host", "127.0.0.1", "--port", "0", *common)]
-    processes += [start("worker", *own, *common) for _ in range(2)]
+    processes += [start("worker", *alone, *common) for _ in range(2)]
     killed_after = []
 
     def kill_a_worker():
         while len(killed_after) < 5:
-            killed_after[:] = there.glob("cells/*.json")
+            killed_after[:] = folder.glob("cells/*.json")
             time.sleep(0.01)
         processes[1].kill()
 
@@ -100,16 +87,27 @@ def test_a_worker_killed_in_the_middle_changes_nothing(tmp_path):
         with Client(scheduler_file=str(file)) as client:
             client.wait_for_workers(2)
             killer.start()
-            plan = {"task": draw, "settings": {"wait": 0.1}, "folder": there, "progress": False}
-            study(grid, 5, jobs=client.get_executor(pure=False), **plan)
+            made = agents(folder, client.get_executor(pure=False))
             killer.join()
-            assert len(client.scheduler_info()["workers"]) == 1
+            return made, len(killed_after), len(client.scheduler_info()["workers"])
     finally:
         for process in processes:
             process.kill()
             process.wait()
-    assert 5 <= len(killed_after) < 30
-    assert (here / "results.csv").read_bytes() == (there / "results.csv").read_bytes()
+
+
+def test_agents_are_the_same_bytes_on_one_process_on_two_and_on_dask_with_a_worker_killed(tmp_path):
+    one, two = agents(tmp_path / "one", 1), agents(tmp_path / "two", 2)
+    there, at_the_kill, alive = agents_on_dask_with_a_worker_killed(tmp_path / "dask", tmp_path)
+    assert one == two == there
+    assert 5 <= at_the_kill < 30 and alive == 1
+    # Every cell is there, and is what one agent, trained by itself, measures.
+    table = pd.read_csv(tmp_path / "one" / "results.csv")
+    cells = table.groupby(["vigilance", "learner", "seed"], sort=False)
+    assert len(cells) == 30
+    cell = cells.get_group((0.06, "Sarsa", 3))
+    alone = measure("goal", 3, vigilance=0.06, learner="Sarsa", **BRIEF)
+    assert dict(zip(cell.quantity, cell.value, strict=True)) == alone
 
 
 def test_a_stopped_study_goes_on_where_it_was_and_a_larger_one_runs_only_what_is_new(tmp_path):
@@ -313,18 +311,18 @@ def test_a_study_is_drawn_from_its_folder(tmp_path):
 
 
 def test_names_are_drawn_side_by_side_and_numbers_across(tmp_path):
-    grid = {"mean": {"none": 0.0, "five": 5.0}, "wait": [0.0, 0.001]}
+    grid = {"mean": {"none": 0.0, "five": 5.0}, "other": [0.0, 1.0]}
     table = study(grid, 2, task=draw, jobs=1, progress=False)
     by_name = plot_study(table, x="mean", quantity="x")
     assert [t.get_text() for t in by_name.ax.get_xticklabels()] == ["none", "five"]
-    assert [*by_name.lines] == ["0.0", "0.001"]
-    by_number = plot_study(table, x="wait", quantity="x")
-    assert by_number.lines["five"].get_xdata().tolist() == [0.0, 0.001]
+    assert [*by_name.lines] == ["0.0", "1.0"]
+    by_number = plot_study(table, x="other", quantity="x")
+    assert by_number.lines["five"].get_xdata().tolist() == [0.0, 1.0]
     assert by_number.lines["five"].get_ydata()[0] - by_number.lines["none"].get_ydata()[0] == 5
 
 
 def test_many_lines_have_a_color_each_and_a_study_of_one_setting_runs_over_its_seeds():
-    grid = {"wait": [0.0, 0.001], "mean": [float(i) for i in range(7)], "learner": ["a", "b", "c"]}
+    grid = {"other": [0.0, 1.0], "mean": [float(i) for i in range(7)], "learner": ["a", "b", "c"]}
     plot = plot_study(study(grid, 1, task=draw, jobs=1, progress=False), quantity="x")
     assert plot.ax.get_xlabel() == "mean"  # the setting with the most values
     assert len({line.get_color() for line in plot.lines.values()}) == len(plot.lines) == 6
