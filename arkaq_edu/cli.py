@@ -308,6 +308,9 @@ def trace(place: tuple[str, ...], everything: bool) -> None:
 def study(file: Path, out: Path, jobs: int, cluster: str | None) -> None:
     """Run all combinations of settings in a TOML FILE.
 
+    environment.md shows what FILE may say, also with parts and tasks of your own; the settings are
+    listed in help(arkaq_edu.experiments.study).
+
     Writes results.csv and results.png. Each finished cell is kept, so an interrupted study
     continues when you call it again, and one with more values or seeds runs only what is new.
     """
@@ -321,7 +324,11 @@ def study(file: Path, out: Path, jobs: int, cluster: str | None) -> None:
     plan = read_plan(file)
     sys.path.insert(0, str(file.resolve().parent))  # parts of one's own stand beside the file
     with _workers(cluster, jobs, file.resolve().parent) as workers:
-        table = study(**plan, folder=out, jobs=workers)
+        try:
+            table = study(**plan, folder=out, jobs=workers)
+        except RuntimeError as failed:
+            click.echo("\n".join(getattr(failed.__cause__, "__notes__", [])), err=True)
+            raise click.ClickException(f"{failed} (the others are in {out})") from failed
     with replacing(out / "results.png") as fresh:
         plot_study(table).ax[0].figure.savefig(fresh, dpi=150)
     click.echo(f"{out / 'results.csv'}: {len(table)} rows, drawn in {out / 'results.png'}")

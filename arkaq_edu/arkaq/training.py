@@ -47,8 +47,8 @@ def require_task(agent: Arkaq, env: Any) -> None:
     given = _checks.instance("env", env, Env).observation_space.shape
     if given != wanted:
         raise ValueError(
-            f"env must give observations of shape {wanted}, the measurements and whether there "
-            f"was a sighting, got {given}"
+            f"env must have an observation_space of shape {wanted}, the measurements and whether "
+            f"there was a sighting, got {given}"
         )
 
 

@@ -12,6 +12,7 @@ import math
 import os
 import platform
 import tomllib
+import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, Executor, as_completed
 from contextlib import suppress
@@ -82,10 +83,11 @@ def study(
           ``goal_distance``;
         - ``episodes``: the number of fresh starts that judge an agent, 500 by default.
 
-        A segmenter or a learner is an object, or the name of a class of `arkaq_edu.art`,
-        `arkaq_edu.arkaq` or `arkaq_edu.experiments.parts`. One of your own is "module:name". With
-        parameters it is a dictionary such as ``{"name": "UniformGrid", "cells": [20, 17]}``.
-        ``vigilance`` and ``learning_rate`` are those of the cell, if they are not given.
+        A segmenter, a learner or ``sensing`` is an object, or the name of a class or function of
+        `arkaq_edu.art`, `arkaq_edu.arkaq` or `arkaq_edu.experiments.parts`. One of your own is
+        "module:name". With parameters it is a dictionary such as
+        ``{"name": "UniformGrid", "cells": [20, 17]}``. ``vigilance`` and ``learning_rate`` are
+        those of the cell, if they are not given.
     seeds : int or iterable of int
         The seeds, or how many: 0, 1, 2, ...
     task : {"approach", "goal"} or function
@@ -127,7 +129,8 @@ def study(
         If a setting is unknown or out of range, before anything is run. If two values of a setting
         have the same name, or a value has none that is short.
     RuntimeError
-        If cells fail. All others are finished then, and kept in `folder`.
+        If cells fail. All others are finished then, and kept in `folder`. The cause has a note
+        with the lines of code at which the first cell failed.
 
     Notes
     -----
@@ -360,7 +363,8 @@ def _try(measure: Callable[..., Any], cell: Cell) -> tuple[str, dict[str, float]
         found = measure(seed=cell.seed, **cell.setting)
         return cell.key, {str(name): float(value) for name, value in found.items()}
     except Exception as error:  # one bad cell must not cost a night
-        return cell.key, error
+        error.add_note(traceback.format_exc())  # which a process does not send home by itself
+        return cell.key, error.with_traceback(None)
 
 
 def _begin(

@@ -146,7 +146,7 @@ class Turret(gymnasium.Env):
 def test_an_environment_of_the_other_task_is_refused(task, other):
     agent = Arkaq(0.06, task=task, rng=0)
     for learn in (agent.segment, agent.learn):
-        with pytest.raises(ValueError, match="env must give observations of shape"):
+        with pytest.raises(ValueError, match="env must have an observation_space of shape"):
             learn(other(), progress=False)
 
 

@@ -1,7 +1,9 @@
 """Studies: the same bytes however they are run, resumed after a stop, refused before they run."""
 
+import ast
 import dataclasses
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -10,6 +12,7 @@ import time
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
+import gymnasium
 import numpy as np
 import pandas as pd
 import pytest
@@ -236,41 +239,86 @@ def test_every_kind_of_setting_reaches_the_agent_or_the_task():
     assert far["learning"] == goal.usual_learning("far")
 
 
-def test_a_segmenter_of_ones_own_stands_beside_the_plan(tmp_path, monkeypatch):
-    monkeypatch.setattr(sys, "path", [*sys.path])
-    (tmp_path / "halves.py").write_text(HALVES)
-    (tmp_path / "plan.toml").write_text(PLAN)
-    words = ["study", str(tmp_path / "plan.toml"), "--out", str(tmp_path / "out"), "--jobs", "1"]
-    answer = CliRunner().invoke(cli.main, words)
+PAGE = (ROOT / "environment.md").read_text(encoding="utf-8")
+FILES = dict(re.findall(r"```(?:python|toml)\n# (\w+\.\w+)\n(.*?)```", PAGE, re.DOTALL))
+
+
+@pytest.fixture
+def researcher(tmp_path, monkeypatch):
+    """Write the files of environment.md, with little training, and run one of its plans."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
+    for name, text in FILES.items():
+        for setting, n in {
+            "seeds": 1,
+            "patterns": 100,
+            "exploration": 300,
+            "exploitation": 0,
+        }.items():
+            text = re.sub(rf"(?m)^{setting} = \d+", f"{setting} = {n}", text)
+        Path(name).write_text(text, encoding="utf-8")
+    yield lambda plan: CliRunner().invoke(cli.main, ["study", plan, "--out", "out", "--jobs", "1"])
+    for module in ("mine", "pole"):
+        sys.modules.pop(module, None)
+
+
+def test_parts_of_ones_own_stand_beside_the_plan_as_the_page_says(researcher):
+    answer = researcher("mine.toml")
     assert answer.exit_code == 0, answer.output
-    table = pd.read_csv(tmp_path / "out" / "results.csv")
-    states = table[table.quantity == "states"].groupby("segmenter").value.unique()
-    assert {name: n.tolist() for name, n in states.items()} == {"mine": [4.0], "grid": [6.0]}
-    assert (tmp_path / "out" / "results.png").read_bytes()[1:4] == b"PNG"
+    table = pd.read_csv("out/results.csv")
+    assert len(table.groupby(["segmenter", "learner", "sensing", "seed"])) == 8
+    wide = table.pivot(index=["segmenter", "learner", "sensing"], columns="quantity").value
+    assert (wide.states.loc["mine"] == 18).all() and (wide.states.loc["network"] != 18).all()
+    for part in ("segmenter", "learner", "sensing"):  # each changes something: none is left unused
+        mine = wide.xs("mine", level=part)
+        other = wide.drop("mine", level=part).droplevel(part)
+        assert not np.allclose(mine, other.loc[mine.index], equal_nan=True)
+    assert Path("out/results.png").read_bytes()[1:4] == b"PNG"
 
 
-HALVES = """
-class Halves:
-    def __init__(self, n=2):
-        self.n_clusters_ = n
+def test_parts_of_ones_own_are_objects_in_python_as_the_page_says(researcher):
+    (block,) = re.findall(
+        r"```python\n(from arkaq_edu.experiments import study\nfrom mine.*?)```", PAGE, re.DOTALL
+    )
+    scope = {}
+    exec(block.replace("seeds=2,", "seeds=2, jobs=1,"), scope)
+    table = scope["table"]
+    assert table.learner.unique().tolist() == ["usual", "mine"]
+    assert (table.value[table.quantity == "states"] == 18).all()
 
-    def category(self, x):
-        return min(int((x[0] + 1) / 2 * self.n_clusters_), self.n_clusters_ - 1)
 
-    learn_one = category
-"""
-PLAN = """
-task = "goal"
-seeds = 2
-[grid.segmenter]
-mine = { name = "halves:Halves", n = 4 }
-grid = { name = "UniformGrid", cells = [6] }
-[settings]
-patterns = 60
-exploration = 40
-exploitation = 40
-episodes = 3
-"""
+def test_a_task_of_ones_own_is_a_function_as_the_page_says(researcher):
+    answer = researcher("pole.toml")
+    assert answer.exit_code == 0, answer.output
+    table = pd.read_csv("out/results.csv")
+    assert table.vigilance.unique().tolist() == [0.7, 0.5, 0.3]
+    states = table.value[table.quantity == "states"].tolist()
+    assert states == sorted(states) and states[0] < states[-1]
+    env = gymnasium.make("CartPole-v1")
+    env.action_space.seed(0)
+    steps = 0
+    for seed in range(500):
+        env.reset(seed=seed)
+        over = False
+        while not over:
+            _, _, over, _, _ = env.step(env.action_space.sample())
+            steps += 1
+    assert steps / 500 == pytest.approx(22, abs=1)
+
+
+def test_what_a_researcher_writes_is_short():
+    for name in ("mine.py", "pole.py"):
+        for node in ast.parse(FILES[name]).body:
+            assert node.end_lineno - node.lineno < 30
+
+
+def test_where_a_cell_failed_is_said_in_the_researchers_own_code(researcher):
+    Path("pole.py").write_text("def balance(seed, vigilance, **more):\n    return 1 / 0\n")
+    answer = researcher("pole.toml")
+    assert answer.exit_code == 2
+    assert 'pole.py", line 2, in balance' in answer.output
+    last = answer.output.strip().splitlines()[-1]
+    assert "3 cells failed" in last and "division by zero" in last
 
 
 @pytest.mark.parametrize(
