@@ -4,9 +4,11 @@ import re
 
 import matplotlib.pyplot as plt
 import pandas as pd
+from joblib.externals import cloudpickle
 
 from arkaq_edu.experiments import judge
 from arkaq_edu.experiments.claims import VERDICTS, computed
+from arkaq_edu.figures.gallery import FIGURES
 from arkaq_edu.figures.report import anchor, write_report
 
 
@@ -73,3 +75,8 @@ def test_the_page_is_one_file_escaped_and_the_same_every_time(tmp_path):
     assert "a &lt;rehearsal&gt;" in page and "<x>" not in page
     again, _ = page_of(tmp_path / "again", note="a <rehearsal>")
     assert page == again
+
+
+def test_every_figure_can_be_drawn_by_another_process():
+    for number, draw in FIGURES.items():
+        assert cloudpickle.loads(cloudpickle.dumps(draw)).__doc__ == draw.__doc__, number

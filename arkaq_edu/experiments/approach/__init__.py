@@ -16,7 +16,7 @@ __getattr__, __dir__, __all__ = _lazy.attach(
             "TRAJECTORY_STARTS", "Trajectory", "describe", "evaluate", "record_episode",
             "score", "trajectory",
         ],
-        "stages": ["Stage", "stages"],
+        "walkthrough": ["Stage", "stages"],
         "sightings": ["calibrate", "load_sightings", "mean_nis", "patterns", "record_sightings"],
         "studies": ["load_study", "seed_runs", "study"],
     },
