@@ -2,9 +2,9 @@
 
 import re
 
+import cloudpickle
 import matplotlib.pyplot as plt
 import pandas as pd
-from joblib.externals import cloudpickle
 
 from arkaq_edu.experiments import judge
 from arkaq_edu.experiments.claims import VERDICTS, computed
