@@ -195,6 +195,8 @@ def n_axes(name: str, value: ArrayLike) -> int:
     Traceback (most recent call last):
     ValueError: b must be an array of numbers, got [[1.0], [0.5, 0.5]]
     """
+    if isinstance(value, (int, float, np.ndarray)):
+        return np.ndim(value)  # it cannot be ragged, and to silence a warning takes longer
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # NumPy says that a mask becomes NaN

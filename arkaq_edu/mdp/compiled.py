@@ -17,11 +17,17 @@ from arkaq_edu._compiled import kernel
 
 
 @kernel
-def update(Q, visits, s, a, r, s_next, discount, alphas):
-    """Make one backup (eq 2.12) and return the change of Q(s, a)."""
-    best = Q[s_next, 0]
+def highest(Q, s):
+    """Return max_b Q(s, b)."""
+    best = Q[s, 0]
     for b in range(1, Q.shape[1]):
-        best = max(best, Q[s_next, b])
+        best = max(best, Q[s, b])
+    return best
+
+
+@kernel
+def update(Q, visits, s, a, r, best, discount, alphas):
+    """Make one backup (eq 2.12) and return the change of Q(s, a). `best` is max_b Q(s', b)."""
     alpha = alphas[min(visits[s, a], len(alphas) - 1)]
     visits[s, a] += 1
     target = r + discount * best
@@ -32,23 +38,24 @@ def update(Q, visits, s, a, r, s_next, discount, alphas):
 
 @kernel
 def replay(Q, visits, s, a, r, s_next, terminated, n_steps, alphas, gamma, changes):
-    """Make the backups of N experiences in their order."""
+    """Make the backups of N experiences in their order, up to one that is out of range.
+
+    Return how many were made.
+    """
+    n_states, n_actions = Q.shape
     for t in range(len(s)):
+        inside = (0 <= s[t] < n_states) & (0 <= a[t] < n_actions) & (0 <= s_next[t] < n_states)
+        if not (inside and abs(r[t]) <= LARGEST):
+            return t
+        best = highest(Q, s_next[t])
+        if best == -math.inf or Q[s[t], a[t]] == -math.inf:  # not allowed
+            return t
         k = n_steps[min(t, len(n_steps) - 1)]
         discount = gamma if k == 1 else gamma ** float(k)
         if terminated[min(t, len(terminated) - 1)]:
             discount = 0.0
-        changes[t] = update(Q, visits, s[t], a[t], r[t], s_next[t], discount, alphas)
-
-
-@kernel
-def in_range(n_states, n_actions, s, a, r, s_next):
-    """Tell whether all experiences are in range."""
-    good = True
-    for t in range(len(s)):
-        good &= 0 <= s[t] < n_states and 0 <= a[t] < n_actions and 0 <= s_next[t] < n_states
-        good &= abs(r[t]) <= LARGEST
-    return good
+        changes[t] = update(Q, visits, s[t], a[t], r[t], best, discount, alphas)
+    return len(s)
 
 
 @kernel
@@ -62,29 +69,23 @@ def weight(gap, temperature):
 @kernel
 def boltzmann(Q, s, temperature, u):
     """Draw an action by its Boltzmann probability (eq 3.2)."""
-    top = Q[s, 0]
-    for a in range(1, Q.shape[1]):
-        top = max(top, Q[s, a])
+    top = highest(Q, s)
     total = 0.0
     for a in range(Q.shape[1]):
         total += weight(Q[s, a] - top, temperature)
-    below, last = 0.0, 0
+    below, chosen = 0.0, 0
     for a in range(Q.shape[1]):
-        before = below
         below += weight(Q[s, a] - top, temperature)
-        if u * total < below:
-            return a
-        if below > before:
-            last = a
-    return last  # u times the total was rounded up to the total
+        # Counted, not branched, as a processor often guesses such a branch wrong. The product can
+        # be rounded up to the total: then it is the last action with a weight.
+        chosen += (below <= u * total) & (below < total)
+    return chosen
 
 
 @kernel
 def greedy(Q, s, u):
     """Draw one of the best actions, each of n with probability 1/n (eq 3.3)."""
-    top = Q[s, 0]
-    for a in range(1, Q.shape[1]):
-        top = max(top, Q[s, a])
+    top = highest(Q, s)
     ties = 0
     for a in range(Q.shape[1]):
         ties += Q[s, a] == top
@@ -152,7 +153,7 @@ def train(
         a = boltzmann(Q, s, temperature, u[t, 1]) if temperature > 0 else greedy(Q, s, u[t, 1])
         s_next = draw(sums, successors, first, a * len(R) + s, u[t, 2])
         discount = 0.0 if ends[s_next] else gamma
-        changes[t] = update(Q, visits, s, a, R[s, a], s_next, discount, alphas)
+        changes[t] = update(Q, visits, s, a, R[s, a], highest(Q, s_next), discount, alphas)
         earned, length, s = earned + R[s, a], length + 1, s_next
         if ends[s]:
             returns[episode], lengths[episode] = earned, length

@@ -239,38 +239,48 @@ class QLearner:
         >>> learner.replay([1, 0], 0, [100.0, 0.0], [2, 1], [True, False])
         array([100.,  90.])
         """
-        n_states, n_actions = self.Q.shape
         experiences = s, a, r, s_next
-        if not _ready(self.Q, *experiences):
-            experiences = (
-                integers("s", s, 0, n_states - 1),
-                integers("a", a, 0, n_actions - 1),
-                array("r", r, (None,) * n_axes("r", r)),
-                integers("s_next", s_next, 0, n_states - 1),
-            )
+        if not _ready(*experiences):
+            experiences = self._in_table(*experiences)
         columns = np.atleast_1d(
             *experiences, _flags("terminated", terminated), integers("n_steps", n_steps, 1)
         )
         try:
-            together = np.broadcast_arrays(*columns)
+            shape = np.broadcast(*columns).shape
         except ValueError:
             lengths = ", ".join(str(c.shape) for c in columns)
             raise ValueError(f"the columns must have one length, got shapes {lengths}") from None
-        if together[0].ndim != 1:
-            raise ValueError(f"the columns must have shape (N,), got {together[0].shape}")
-        if np.isneginf(self.Q).any():
-            best = self.Q.max(axis=1)
-            wrong = np.isneginf(self.Q[together[0], together[1]]) | np.isneginf(best[together[3]])
-            if wrong.any():
-                i = int(wrong.argmax())
-                s_i, a_i, s_next_i = (int(together[k][i]) for k in (0, 1, 3))
-                raise ValueError(f"{_refusal(s_i, a_i, s_next_i, best[s_next_i])} at ({i},)")
-        changes = np.empty(len(together[0]))
+        if len(shape) != 1:
+            raise ValueError(f"the columns must have shape (N,), got {shape}")
+        s, a, r, s_next = (
+            np.ascontiguousarray(c if c.shape == shape else np.broadcast_to(c, shape))
+            for c in columns[:4]
+        )
         # The loop itself repeats a single `terminated` or `n_steps`: that saves two copies.
-        arrays = map(np.ascontiguousarray, (*together[:4], *columns[4:]))
-        rates = self.rates(len(changes))
-        compiled.replay(self.Q, self.visits, *arrays, rates, self.gamma, changes)
+        terminated, n_steps = map(np.ascontiguousarray, columns[4:])
+        # It learns in copies, so that it can check each experience as it comes to it.
+        Q, visits, changes = self.Q.copy(), self.visits.copy(), np.empty(shape)
+        learned = compiled.replay(
+            Q, visits, s, a, r, s_next, terminated, n_steps, self.rates(len(changes)), self.gamma,
+            changes,
+        )  # fmt: skip
+        if learned < len(changes):
+            self._in_table(s, a, r, s_next)
+            s_i, a_i, s_next_i = (int(column[learned]) for column in (s, a, s_next))
+            refusal = _refusal(s_i, a_i, s_next_i, self.Q[s_next_i].max())
+            raise ValueError(f"{refusal} at ({learned},)")
+        self.Q[:], self.visits[:] = Q, visits
         return changes
+
+    def _in_table(self, s: ArrayLike, a: ArrayLike, r: ArrayLike, s_next: ArrayLike) -> Any:
+        """Return columns of experiences in the table's range."""
+        n_states, n_actions = self.Q.shape
+        return (
+            integers("s", s, 0, n_states - 1),
+            integers("a", a, 0, n_actions - 1),
+            array("r", r, (None,) * n_axes("r", r)),
+            integers("s_next", s_next, 0, n_states - 1),
+        )
 
     def probabilities(self, s: int, temperature: float) -> NDArray[np.float64]:
         """Return the Boltzmann probabilities of the actions in `s` (equation 3.2).
@@ -516,12 +526,10 @@ def _refusal(s: int, a: int, s_next: int, best: float) -> str:
     return f"a must be an action that state {s} allows, got {a} with Q = -inf"
 
 
-def _ready(Q: NDArray[np.float64], *experiences: Any) -> bool:
-    """Return whether columns need neither a conversion nor a refusal, in one pass over them."""
+def _ready(*experiences: Any) -> bool:
+    """Return whether the compiled loop can read columns, and check them, as they are."""
     kinds = (np.int64, np.int64, np.float64, np.int64)
     return (
         all(type(x) is np.ndarray and x.ndim == 1 for x in experiences)
         and tuple(x.dtype for x in experiences) == kinds
-        and len({len(x) for x in experiences}) == 1
-        and compiled.in_range(*Q.shape, *experiences)
     )

@@ -13,6 +13,8 @@ from arkaq_edu.pomdp.model import POMDP
 
 Floats = NDArray[np.float64]
 
+_FLOAT = np.dtype(np.float64)
+
 # A belief whose sum is this close to 1 is taken as it is.
 NEARLY = 1e-12
 
@@ -159,14 +161,14 @@ def belief_update(pomdp: POMDP, b: ArrayLike, a: int, z: int) -> Floats:
     b, T, O = _belief(pomdp, b), pomdp.T, pomdp.O  # noqa: E741
     a = integer("a", a, 0, pomdp.n_actions - 1)
     z = integer("z", z, 0, pomdp.n_observations - 1)
-    joint = _column(O[a], z) * (b @ T[a])  # the numerator of equation 2.15
-    chance = joint.sum()  # the denominator: Pr(z | a, b)
+    predicted, seen = b @ T[a], _column(O[a], z)
+    chance = seen @ predicted  # the denominator of equation 2.15: Pr(z | a, b)
     if not chance > 0:
         raise ValueError(
             f"z must be an observation that can follow: {pomdp.observations[z]!r} has probability "
             f"0 after {pomdp.actions[a]!r} from this belief"
         )
-    return joint / chance
+    return seen * predicted / chance
 
 
 def successors(pomdp: POMDP, b: ArrayLike, a: int) -> Successors:
@@ -378,7 +380,7 @@ def _column(O: Any, z: int) -> Floats:  # noqa: E741
 
 
 def _belief(pomdp: POMDP, b: ArrayLike) -> Floats:
-    if type(b) is np.ndarray and b.dtype == np.float64 and b.shape == pomdp.start.shape:
+    if type(b) is np.ndarray and b.dtype is _FLOAT and b.shape == pomdp.start.shape:
         p = b.tolist()
         if abs(sum(p) - 1) < NEARLY and min(p) >= 0:
             return b  # as an update returned it: the gate would take longer than the next update

@@ -346,6 +346,26 @@ def test_replay_refuses_and_learns_nothing(columns, message):
     assert (before == learner.Q).all() and not learner.visits.any()
 
 
+@pytest.mark.parametrize(
+    ("column", "wrong", "message"),
+    [
+        (0, 3, r"s must hold integers in \[0, 2\], got 3 at \(7,\)"),
+        (1, -1, r"a must hold integers in \[0, 1\], got -1 at \(7,\)"),
+        (2, np.inf, r"r must hold finite numbers, got inf at \(7,\)"),
+        (3, 2, r"s_next must allow an action, .* in state 2 at \(7,\)"),
+    ],
+)
+def test_replay_learns_nothing_before_a_fault_either(column, wrong, message):
+    learner = QLearner(3, 2, alpha=0.5, gamma=0.9, initial=2.0)
+    learner.Q[2] = -np.inf
+    before = learner.Q.copy()
+    columns = [np.arange(9) % 2, np.arange(9) % 2, np.ones(9), np.arange(9) % 2]
+    columns[column][7] = wrong
+    with pytest.raises(ValueError, match=message):
+        learner.replay(*columns, False)
+    assert (before == learner.Q).all() and not learner.visits.any()
+
+
 def test_replay_of_nothing_changes_nothing():
     learner = QLearner(3, 2, alpha="1/visits", gamma=0.9)
     nothing = np.array([], dtype=int)
