@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import copy
 import os
-from typing import TYPE_CHECKING, Any, Literal
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,7 +16,7 @@ from arkaq_edu.arkaq.learners import Learner, QLearning
 from arkaq_edu.arkaq.segmenters import Segmenter
 from arkaq_edu.arkaq.sensing import PRESETS, Estimator, Sensing
 from arkaq_edu.arkaq.settings import TrainingSettings
-from arkaq_edu.arkaq.training import FINISHED, LEARNING, SEGMENTING, TASKS
+from arkaq_edu.arkaq.training import FINISHED, LEARNING, SEGMENTING, TASKS, Phase
 from arkaq_edu.art import EuclideanART
 
 if TYPE_CHECKING:
@@ -225,17 +226,60 @@ class Arkaq:
         RuntimeError
             If the ball, or the goal, is never seen.
         """
+        for _ in self.events(env, checkpoint, progress):
+            pass
+        return self
+
+    def events(
+        self,
+        env: gymnasium.Env,
+        checkpoint: str | os.PathLike[str] | None = None,
+        progress: bool = False,
+        learns: bool = True,
+    ) -> Iterator[Event]:
+        """Learn as `learn` does, and stop after each event of the automata to be watched.
+
+        Parameters
+        ----------
+        env, checkpoint, progress
+            As for `learn`.
+        learns : bool
+            If False, stop where `segment` does.
+
+        Yields
+        ------
+        Event
+            The phase, its state that has worked, the event, and the state that follows.
+
+        Examples
+        --------
+        >>> import gymnasium
+        >>> agent = Arkaq(learning=TrainingSettings(patterns=1, exploration=5), rng=0)
+        >>> for event in agent.events(gymnasium.make("arkaq_edu:BallApproach-v0"), learns=False):
+        ...     print(event.state, "--", event.event, "->", event.then)
+        supervisor -- reset -> observe
+        observe -- ball seen -> network
+        network -- category created -> act
+        act -- period over -> supervisor
+        supervisor -- enough -> done
+        """
         with storage.Checkpoint(self, checkpoint) as file:
-            file.resume(env, learns=True)
-            self._segment(env, file, progress)
+            file.resume(env, learns=learns)
+            file.write()
+            task = TASKS[self.task]
+            if self.phase == SEGMENTING:
+                yield from _watched(task.segmentation(self, env, file, progress))
+                self.phase, self.done_in_phase = LEARNING, 0
+                file.write()
+            if not learns:
+                return
             if self.phase == LEARNING:
                 if self.q is None:
                     self.new_learner(int(env.action_space.n))  # type: ignore[attr-defined]
-                TASKS[self.task].q_learning(self, env, file, progress).run()
+                yield from _watched(task.q_learning(self, env, file, progress))
                 self.phase = FINISHED
             self.reset()
             file.write()
-        return self
 
     def segment(
         self,
@@ -255,17 +299,9 @@ class Arkaq:
         Arkaq
             The agent itself. An agent that has already segmented its world does nothing.
         """
-        with storage.Checkpoint(self, checkpoint) as file:
-            file.resume(env, learns=False)
-            self._segment(env, file, progress)
+        for _ in self.events(env, checkpoint, progress, learns=False):
+            pass
         return self
-
-    def _segment(self, env: gymnasium.Env, file: storage.Checkpoint, progress: bool) -> None:
-        file.write()
-        if self.phase == SEGMENTING:
-            TASKS[self.task].segmentation(self, env, file, progress).run()
-            self.phase, self.done_in_phase = LEARNING, 0
-            file.write()
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the agent to an npz file of arrays and JSON, without pickles.
@@ -303,6 +339,28 @@ class Arkaq:
             If the file is not an agent, is damaged, or has a format this version cannot read.
         """
         return storage.load(cls, path)
+
+
+class Event(NamedTuple):
+    """Something that happened while an agent learned.
+
+    Attributes
+    ----------
+    phase : Phase
+        The phase of training; see `arkaq_edu.arkaq.training`.
+    state, event, then : str
+        The state of the automaton that has worked, the event, and the state that follows.
+    """
+
+    phase: Phase
+    state: str
+    event: str
+    then: str
+
+
+def _watched(phase: Phase) -> Iterator[Event]:
+    for state, event, then in phase.events():
+        yield Event(phase, state, event, then)
 
 
 def _require(role: str, part: Any, methods: tuple[str, ...]) -> None:

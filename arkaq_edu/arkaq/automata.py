@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 DONE = "done"
@@ -37,9 +37,23 @@ class Automaton:
 
     def run(self, work: Mapping[str, Callable[[], str]]) -> None:
         """Call the function of each state, which returns an event, until the table says "done"."""
+        for _ in self.events(work):
+            pass
+
+    def events(self, work: Mapping[str, Callable[[], str]]) -> Iterator[tuple[str, str, str]]:
+        """Run, and stop after each event: yield the state, its event, and the state that follows.
+
+        Examples
+        --------
+        >>> door = Automaton("shut", {("shut", "push"): "open", ("open", "leave"): "done"})
+        >>> next(door.events({"shut": lambda: "push"}))
+        ('shut', 'push', 'open')
+        """
         state = self.start
         while state != DONE:
-            state = self.table[state, work[state]()]
+            event = work[state]()
+            worked, state = state, self.table[state, event]
+            yield worked, event, state
 
 
 # Figure 5.6. The thesis draws no end. Here the phase is over after a number of patterns.

@@ -9,7 +9,7 @@ an episode when it is finished, there after each experience.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -87,9 +87,10 @@ class Phase:
         """Patterns or cycles after which the phase is finished."""
         raise NotImplementedError
 
-    def run(self) -> None:
-        """Run the automaton to its end."""
-        self.automaton.run({state: getattr(self, state) for state in self.automaton.states})
+    def events(self) -> Iterator[tuple[str, str, str]]:
+        """Run the automaton to its end, event by event; see `Automaton.events`."""
+        states = self.automaton.states
+        return self.automaton.events({state: getattr(self, state) for state in states})
 
     def supervisor(self) -> str:
         """Record the episode that ended, write the checkpoint, and reset the world."""
@@ -173,11 +174,11 @@ class QLearningPhase(Phase):
         """Cycles to take."""
         return self.settings.exploration + self.settings.exploitation
 
-    def run(self) -> None:
-        """Run the automaton to its end."""
+    def events(self) -> Iterator[tuple[str, str, str]]:
+        """Run the automaton to its end, event by event."""
         assert self.agent.q is not None
         self.learner, self.category = self.agent.q, self.agent.art.category
-        super().run()
+        return super().events()
 
     def supervisor(self) -> str:
         """Start the next episode with no experience in it."""

@@ -260,6 +260,19 @@ class World:
         self._ball = Motion(complex(x, y), 0.0, 0j, 0.0)
         self._physics = None  # it still knows what the ball touched elsewhere
 
+    def put_robot(self, x: float, y: float, heading: float) -> None:
+        """Put the robot somewhere else, at rest (mm, mm, rad): somebody has pushed it.
+
+        Raises
+        ------
+        ValueError
+            If that is not on the carpet.
+        """
+        x, y, heading = _checks.array("robot", (x, y, heading), (3,)).tolist()
+        _check_on_carpet("robot", x, y)
+        self._robot = Motion(complex(x, y), heading, 0j, 0.0)
+        self._physics = None
+
     def swing_paw(self) -> list[tuple[float, float]]:
         """Kick, and let the ball roll until it rests.
 

@@ -1,10 +1,12 @@
 """What the notebooks let a student move: sliders above a picture that follows them.
 
 Every explorer is an `Explorer`: plain controls, a plain function from their values to a `Scene`,
-and one canvas that draws any scene. `EXPLORERS` has them all by name.
+and one canvas that draws any scene. The live robot plays frames instead, which `robot` makes and
+live.js draws. `EXPLORERS` has them all by name.
 """
 
 from collections.abc import Callable
+from functools import partial
 
 from arkaq_edu.widgets.arkaq import sighting_explorer
 from arkaq_edu.widgets.art import letters_explorer, resonance_explorer
@@ -15,6 +17,7 @@ from arkaq_edu.widgets.film import film_explorer
 from arkaq_edu.widgets.goal import scoring_explorer
 from arkaq_edu.widgets.kalman import kalman_explorer
 from arkaq_edu.widgets.learning import bandit_explorer, horizon_explorer
+from arkaq_edu.widgets.live import LiveRobot, LiveView, live_robot, race
 from arkaq_edu.widgets.mdp import planning_explorer, q_learning_explorer
 from arkaq_edu.widgets.pomdp import bowl_explorer, value_explorer
 from arkaq_edu.widgets.segmentation import vigilance_explorer
@@ -35,6 +38,9 @@ EXPLORERS: dict[str, Callable[..., Explorer]] = {
     "field": control_panel,
     "sighting": sighting_explorer,
     "scoring": scoring_explorer,
+    "robot": live_robot,
+    "robot-goal": partial(live_robot, "goal"),
+    "race": race,
 }
 
 __all__ = [
@@ -43,6 +49,8 @@ __all__ = [
     "CanvasView",
     "Drag",
     "Explorer",
+    "LiveRobot",
+    "LiveView",
     "bandit_explorer",
     "belief_explorer",
     "bowl_explorer",
@@ -51,8 +59,10 @@ __all__ = [
     "horizon_explorer",
     "kalman_explorer",
     "letters_explorer",
+    "live_robot",
     "planning_explorer",
     "q_learning_explorer",
+    "race",
     "resonance_explorer",
     "scoring_explorer",
     "sighting_explorer",

@@ -103,7 +103,7 @@ function axesOf(panel, box) {
   };
 }
 
-function drawPanel(ctx, panel, numbers, box, ratio) {
+function drawPanel(ctx, panel, numbers, box, ratio, ink = INK) {
   const { at } = axesOf(panel, box);
   // Thin lines are sharp where they run through the middle of the screen's own pixels.
   const sharp = (value) => (Math.round(value * ratio) + 0.5) / ratio;
@@ -123,7 +123,7 @@ function drawPanel(ctx, panel, numbers, box, ratio) {
   ctx.moveTo(left, box.y);
   ctx.lineTo(left, foot);
   ctx.lineTo(box.x + box.width, foot);
-  ctx.fillStyle = ctx.strokeStyle = INK;
+  ctx.fillStyle = ctx.strokeStyle = ink;
   ctx.lineWidth = 1;
   ctx.textAlign = "center";
   ctx.textBaseline = "top";
@@ -244,6 +244,23 @@ function takeInput(model, canvas, panelAt) {
   canvas.classList.add("arkaq-draggable");
 }
 
+// A canvas of that size with its pixels, the number of these in one of the page, and whether it is
+// blank now.
+function prepared(canvas, el, width, height) {
+  const scale = scaleOf(el);
+  const ratio = window.devicePixelRatio * scale;
+  const size = [Math.round(width * ratio), Math.round(height * ratio)];
+  // Giving a canvas a size, even the one it has, costs a new buffer.
+  const fresh = canvas.width !== size[0] || canvas.height !== size[1];
+  if (fresh) [canvas.width, canvas.height] = size;
+  canvas.style.width = `${width * scale}px`;
+  canvas.style.height = `${height * scale}px`;
+  const ctx = canvas.getContext("2d");
+  ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
+  ctx.font = `12px ${getComputedStyle(el).fontFamily}`;
+  return { ctx, ratio, fresh };
+}
+
 // What ipywidgets leaves undone around the canvas: its sliders have no name and say a rounded
 // value, and a key pressed on them is also a shortcut of JupyterLab.
 function befriend(root) {
@@ -261,6 +278,9 @@ function befriend(root) {
     }
     for (const button of root.querySelectorAll("button")) {
       button.setAttribute("aria-disabled", button.classList.contains("arkaq-off"));
+      if (button.matches(".widget-toggle-button")) {
+        button.setAttribute("aria-pressed", button.classList.contains("mod-active"));
+      }
     }
   };
   const watch = new MutationObserver(tell);
@@ -295,18 +315,10 @@ function render({ model, el }) {
     const numbers = new Float32Array(
       bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength),
     );
-    const ratio = window.devicePixelRatio * scale;
     const [boxes, height] = arrange(scene.panels, width);
-    const size = [Math.round(width * ratio), Math.round(height * ratio)];
-    // Giving a canvas a size, even the one it has, costs a new buffer.
-    if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
-    canvas.style.width = `${width * scale}px`;
-    canvas.style.height = `${height * scale}px`;
-    const ctx = canvas.getContext("2d");
-    ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
+    const { ctx, ratio } = prepared(canvas, el, width, height);
     ctx.fillStyle = "white";
     ctx.fillRect(0, 0, width, height);
-    ctx.font = `12px ${getComputedStyle(el).fontFamily}`;
     scene.panels.forEach((panel, i) => drawPanel(ctx, panel, numbers, boxes[i], ratio));
     places = draggable.map((panel) => {
       const box = boxes[panel];

@@ -322,6 +322,8 @@ class Explorer(ipywidgets.VBox):
     draw : callable
         Takes the values of the controls by name and returns a `Scene`. It is a plain function, so
         it can be tested without a browser.
+    view : CanvasView, optional
+        What draws it.
     **controls : ipywidgets widget
         Widgets with a ``value``: sliders, menus, `Buttons`, `Drag`.
 
@@ -347,8 +349,13 @@ class Explorer(ipywidgets.VBox):
     a dot at 7
     """
 
-    def __init__(self, draw: Callable[..., Scene], **controls: ipywidgets.DOMWidget) -> None:
-        self.view = CanvasView()
+    def __init__(
+        self,
+        draw: Callable[..., Scene],
+        view: Any = None,
+        **controls: ipywidgets.DOMWidget,
+    ) -> None:
+        self.view = CanvasView() if view is None else view
         self.controls = controls
         self.error: Exception | None = None
         self._draw = draw
@@ -371,8 +378,11 @@ class Explorer(ipywidgets.VBox):
         self.view.show(self.drawn)
 
     def _moved(self, _: Any) -> None:
+        self._try(self._redraw)
+
+    def _try(self, act: Callable[[], None]) -> None:
         try:
-            self._redraw()
+            act()
             self.error, self._message.value = None, ""
         except Exception as error:  # in a callback it would vanish in the kernel's log
             self.error = error

@@ -45,9 +45,9 @@ class Blinking(gymnasium.Wrapper):
 def test_the_tables_hold_just_what_can_happen(monkeypatch):
     tables = (SEGMENTATION, Q_LEARNING, GOAL_SEGMENTATION, GOAL_Q_LEARNING)
     happened = {id(automaton): set() for automaton in tables}
-    run = Automaton.run
+    events = Automaton.events
 
-    def run_and_tell(self, work):
+    def watch(self, work):
         def telling(state):
             def tell():
                 event = work[state]()
@@ -56,9 +56,9 @@ def test_the_tables_hold_just_what_can_happen(monkeypatch):
 
             return tell
 
-        run(self, {state: telling(state) for state in work})
+        return events(self, {state: telling(state) for state in work})
 
-    monkeypatch.setattr(Automaton, "run", run_and_tell)
+    monkeypatch.setattr(Automaton, "events", watch)
     brief_agent(env=near_task(patience=4))
     brief_scorer(env=Blinking(gymnasium.make(GOAL_TASK)))
     for automaton in tables:
