@@ -134,6 +134,8 @@ class Home:
     places : list of (kind, number)
     lead : list of (kind, number)
         Those in the first paragraph or the references of its docstring.
+    beside : dict of (kind, number) to int
+        Those in a comment beside its code, and the line.
     """
 
     name: str
@@ -141,6 +143,7 @@ class Home:
     line: int
     places: list[tuple[str, str]]
     lead: list[tuple[str, str]]
+    beside: dict[tuple[str, str], int]
 
     @property
     def room(self) -> str:
@@ -167,23 +170,25 @@ def _homes_in(path: Path) -> Iterator[Home]:
         return
     tree, comments = ast.parse(text), _comments(path)
     for node, full in _definitions(tree, ""):
-        inside = [comments[i] for i in range(node.lineno, node.end_lineno or 0) if i in comments]
+        lines = range(node.lineno, (node.end_lineno or 0) + 1)
+        inside = {i: comments[i] for i in lines if i in comments}
         yield _home(full, name, node.lineno, ast.get_docstring(node) or "", inside)
     if name == "figures/approach.py":  # made from a table
         line = text[: text.index("\nTRAJECTORIES = ") + 1].count("\n") + 1
-        yield _home("TRAJECTORIES", name, line, "figures 5.17 to 5.30", [])
-    outside = [text for text in comments.values() if text.startswith("#:")]
+        yield _home("TRAJECTORIES", name, line, "figures 5.17 to 5.30", {})
+    outside = {i: text for i, text in comments.items() if text.startswith("#:")}
     module = name.removesuffix(".py").replace("/", ".")
     yield _home(module, name, 1, ast.get_docstring(tree) or "", outside)
 
 
-def _home(name: str, file: str, line: int, docstring: str, comments: list[str]) -> Home:
+def _home(name: str, file: str, line: int, docstring: str, comments: dict[int, str]) -> Home:
     drawn = _drawn(name)
     own = [("figure", drawn[1].replace("_", "."))] if drawn else []
     head, _, references = docstring.partition("References\n")
     lead = places(head.split("\n\n")[0] + "\n" + references.split("\n\n")[0])
-    every = [*own, *places("\n".join([docstring, *comments]))]
-    return Home(name, file, line, list(dict.fromkeys(every)), [*own, *lead])
+    beside = {place: i for i, text in reversed(comments.items()) for place in places(text)}
+    every = [*own, *places(docstring), *beside]
+    return Home(name, file, line, list(dict.fromkeys(every)), [*own, *lead], beside)
 
 
 def _drawn(name: str) -> re.Match[str] | None:
@@ -268,8 +273,9 @@ def table() -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        One row for each place and home: kind, number, name, file, line, tests (a list), notebooks
-        (a list). A place without a home in the package has an empty name.
+        One row for each place and home: kind, number, name, file, line (that of the equation, if
+        it stands there, else of the definition), tests (a list), notebooks (a list). A place
+        without a home in the package has an empty name.
 
     Examples
     --------
@@ -284,26 +290,24 @@ def table() -> pd.DataFrame:
 
 def _rows(place: tuple[str, str]) -> list[tuple]:
     kind, number = place
-    own = [home for home in homes() if place in home.places]
-    if kind == "errata row":
-        named = set(places(errata().place[int(number)]))
-        own += [home for home in homes() if named & set(home.places) and home not in own]
-    direct = [test.where for test in all_tests() if place in test.places]
+    named = [place] + (places(errata().place[int(number)]) if kind == "errata row" else [])
+    tested = [test.where for one in named for test in all_tests() if one in test.places]
     read = [name for name, (said, _) in notebooks().items() if place in said]
-    if not own:
-        return [(kind, number, "", "", 0, direct, read)]
+    own = [home for home in homes() if set(named) & set(home.places)]
     rows = []
-    for home in sorted(own, key=lambda home: _rank(home, place)):
+    for home in sorted(own, key=lambda home: _rank(home, named)):
+        line = min((home.beside[one] for one in named if _stands(home, one)), default=home.line)
         last = home.name.split(".")[-1]
-        calling = _calling().get((home.room, last), [])
-        using = [name for name, (_, called) in notebooks().items() if last in called]
-        if last in _ambiguous():
-            using = []
+        calling, using = [], []  # where a name means one thing only
+        if _named()[home.room, last] == 1:
+            calling = _calling().get((home.room, last), [])
+        if _named()["", last] == 1:
+            using = [name for name, (_, called) in notebooks().items() if last in called]
         rows.append(
-            (kind, number, home.name, home.file, home.line,
-             list(dict.fromkeys(direct + calling)), list(dict.fromkeys(read + using)))
+            (kind, number, home.name, home.file, line,
+             list(dict.fromkeys(tested + calling)), list(dict.fromkeys(read + using)))
         )  # fmt: skip
-    return rows
+    return rows or [(kind, number, "", "", 0, tested, read)]
 
 
 @lru_cache
@@ -317,32 +321,44 @@ def _calling() -> dict[tuple[str, str], list[str]]:
 
 
 @lru_cache
-def _ambiguous() -> set[str]:
-    """Return the names that several functions or methods share: a call does not tell which."""
-    counts = Counter(
-        full.split(".")[-1]
+def _named() -> Counter[tuple[str, str]]:
+    """Count the functions and methods of each name, by room and, as room "", in all."""
+    full = [
+        (path.relative_to(PACKAGE).parts[0], name.split(".")[-1])
         for path in PACKAGE.rglob("*.py")
-        for _, full in _definitions(ast.parse(path.read_text(encoding="utf-8")), "")
-    )
-    return {name for name, n in counts.items() if n > 1}
+        for _, name in _definitions(ast.parse(path.read_text(encoding="utf-8")), "")
+    ]
+    return Counter([*full, *(("", name) for _, name in full)])
 
 
 #: Where a method lives before it is drawn or played with.
 _ROOMS = ("kalman", "art", "mdp", "pomdp", "arkaq", "field", "envs", "experiments", "figures")
 
 
-def _rank(home: Home, place: tuple[str, str]) -> tuple:
-    """Order homes: what draws the figure; then what names the place first; then the plain code."""
+def _stands(home: Home, place: tuple[str, str]) -> bool:
+    """Return whether an equation stands in the plain code of a method."""
+    method = home.room in _ROOMS[:5] and "compiled" not in home.file
+    return method and place[0] == "eq" and place in home.beside
+
+
+def _rank(home: Home, named: list[tuple[str, str]]) -> tuple:
+    """Order homes: what draws the figure; where the equation stands; what names it first."""
     drawn = _drawn(home.name)
-    draws = place[0] == "figure" and (
-        home.name == "TRAJECTORIES" or bool(drawn and drawn[1].replace("_", ".") == place[1])
+    draws = named[0][0] == "figure" and (
+        home.name == "TRAJECTORIES"
+        or bool(drawn and ("figure", drawn[1].replace("_", ".")) == named[0])
     )
     module = home.name == home.file.removesuffix(".py").replace("/", ".")
     room = _ROOMS.index(home.room) if home.room in _ROOMS else len(_ROOMS)
-    picture = place[0] != "figure" and room >= _ROOMS.index("figures")
-    twin = "compiled" in home.file or "kernels" in home.file or home.name.startswith("_")
-    named_late = place not in home.lead
-    return not draws, picture, named_late, module, twin, len(home.lead), room, home.file, home.line
+    picture = named[0][0] != "figure" and room >= _ROOMS.index("figures")
+    stands = any(_stands(home, place) for place in named)
+    first = named[0] in home.places, bool(set(named) & set(home.lead))
+    twin = "compiled" in home.file or "kernels" in home.file
+    private = home.name.startswith("_") or room >= _ROOMS.index("experiments")
+    return (
+        not draws, picture, not stands, not first[0], not first[1], module, twin, private,
+        len(home.lead), room, home.file, home.line,
+    )  # fmt: skip
 
 
 def trace(place: str) -> pd.DataFrame:

@@ -57,7 +57,7 @@ def f(x, k):
     for i in range(len(x)):
         if x[i] < k.theta:
             damped = 2.0 * k.theta * x[i] * x[i] / (x[i] * x[i] + k.theta * k.theta)
-            signal[i] = damped if k.smooth else 0.0  # eq 2.32 or 2.34; the rest is 2.33 and 2.35
+            signal[i] = damped if k.smooth else 0.0  # eq 2.32 or 2.34; else eq 2.33 or 2.35
     return signal
 
 
@@ -65,15 +65,15 @@ def f(x, k):
 def cycle(I, z, u, q, k):
     """Go once around the loops of F1, from `u` and `q`; `z` is what F2 expects.
 
-    Each level is at rest with its inputs (2.25, the limit of 2.24). The thesis lists the levels
-    from the top; the order here is that in which activity flows, from the input up.
+    Each level is at rest with its inputs (eq 2.25, the limit of eq 2.24). The thesis lists the
+    levels from the top; the order here is that in which activity flows, from the input up.
     """
     a, b, d, e = k.a, k.b, k.d, k.e
     w = I + a * u  # eq 2.30
     x = w / (e + norm(w))  # eq 2.31
     v = f(x, k) + b * f(q, k)  # eq 2.29
     u = v / (e + norm(v))  # eq 2.28
-    p = u + d * z  # eq 2.26, which is 2.38 when F2 has chosen
+    p = u + d * z  # eq 2.26, which is eq 2.38 when F2 has chosen
     q = p / (e + norm(p))  # eq 2.27
     return F1(w, x, v, u, p, q)
 
@@ -162,8 +162,8 @@ def learn(X, top_down, bottom_up, counts, n, k):
             bottom_up[J] = k.start
             counts[J] = 0
         u = follow(I, u, k) if k.rate == 1.0 else u
-        top_down[J] += k.rate * (u / (1.0 - k.d) - top_down[J])  # eq 2.39, as 2.41 has it
-        bottom_up[J] += k.rate * (u / (1.0 - k.d) - bottom_up[J])  # eq 2.40, as 2.42 has it
+        top_down[J] += k.rate * (u / (1.0 - k.d) - top_down[J])  # eq 2.39, as eq 2.41 has it
+        bottom_up[J] += k.rate * (u / (1.0 - k.d) - bottom_up[J])  # eq 2.40, as eq 2.42 has it
         counts[J] += 1
     return labels, n
 

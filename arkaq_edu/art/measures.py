@@ -32,9 +32,9 @@ def coverage(network: ART2A | EuclideanART, patterns: ArrayLike) -> float:
     ValueError
         For another network, or patterns that `predict` refuses.
 
-    References
-    ----------
-    Thesis, sections 4.2.1 and 4.2.2: cosine > vigilance; distance < vigilance.
+    Notes
+    -----
+    The tests of the thesis's sections 4.2.1 and 4.2.2: cosine > vigilance; distance < vigilance.
 
     Examples
     --------

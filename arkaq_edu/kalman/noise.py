@@ -53,7 +53,7 @@ def fit_noise(kf: KalmanFilter, Z: ArrayLike, U: ArrayLike | None = None) -> Kal
     References
     ----------
     F. C. Schweppe, "Evaluation of likelihood functions for Gaussian signals", IEEE Transactions
-    on Information Theory 11 (1965). Thesis section 2.5, eq 2.51 and 2.52.
+    on Information Theory 11 (1965). Thesis section 2.5.
 
     Examples
     --------

@@ -82,8 +82,8 @@ def simulated_walk(rng: np.random.Generator | int | None = 0) -> Walk:
     rng = np.random.default_rng(rng)
     U = np.repeat([1.0, 0.0, 1.0, 0.0], 15)
     start = START + START_NOISE * rng.standard_normal()
-    truth = start + np.cumsum(STEP * U + STEP_NOISE * rng.standard_normal(len(U)))
-    Z = truth + SIGHTING_NOISE * rng.standard_normal(len(U))
+    truth = start + np.cumsum(STEP * U + STEP_NOISE * rng.standard_normal(len(U)))  # eq 2.51
+    Z = truth + SIGHTING_NOISE * rng.standard_normal(len(U))  # eq 2.52
     return Walk(truth, Z[:, np.newaxis], U[:, np.newaxis], rng.random(len(U)))
 
 

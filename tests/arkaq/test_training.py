@@ -54,6 +54,14 @@ def test_a_small_agent_learns_to_walk_to_the_ball():
     assert later > np.mean([row[3] for row in in_q_learning[:60]])
 
 
+@pytest.mark.thesis("errata row 4")
+def test_without_rewards_the_segmentation_is_the_same_and_nothing_else_is_learned(brief):
+    unpaid = gymnasium.wrappers.TransformReward(near_task(), lambda reward: 0.0)
+    agent = Arkaq(brief.vigilance, learning=BRIEF, rng=brief.seed).learn(unpaid, progress=False)
+    assert (agent.art.cluster_centers_ == brief.art.cluster_centers_).all()
+    assert not agent.q.Q.any() and brief.q.Q.any()
+
+
 def test_the_vigilance_is_a_distance_between_patterns(brief):
     centers = brief.art.cluster_centers_
     assert np.abs(centers).max() <= 1

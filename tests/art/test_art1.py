@@ -111,6 +111,7 @@ def test_a_match_of_exactly_the_vigilance_is_enough():
     assert ART1(vigilance=np.nextafter(2 / 3, 1)).fit_predict(patterns).tolist() == [0, 1]
 
 
+@pytest.mark.thesis("errata row 19")
 def test_higher_vigilance_makes_more_categories():
     X = np.random.default_rng(0).random((300, 12)) < 0.4
     counts = [ART1(v).fit(X).n_clusters_ for v in (0.2, 0.5, 0.7, 0.9)]

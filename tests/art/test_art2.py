@@ -81,6 +81,7 @@ def analog_patterns(rng, n, m, kinds=4):
     return np.abs(prototypes[rng.integers(0, kinds, n)] + 0.05 * rng.normal(size=(n, m)))
 
 
+@pytest.mark.thesis("eqs 2.25 to 2.31, 2.36, 2.38 to 2.40, 2.43 and 2.44")
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize(
     "choice",
@@ -107,6 +108,7 @@ def test_the_network_is_the_equations(seed, choice):
     assert art.counts_.tolist() == [labels.count(j) for j in range(len(written.up))]
 
 
+@pytest.mark.thesis("eq 2.47, errata row 24")
 @settings(max_examples=40, deadline=None)
 @given(
     seed=st.integers(0, 2**32 - 1),
@@ -162,6 +164,7 @@ def test_a_trace_obeys_the_equations_and_ends_as_the_network_does(seed, smooth):
     assert art.learn_one(x) == winner
 
 
+@pytest.mark.thesis("eq 2.37, errata row 21")
 def test_nodes_are_tried_in_the_order_of_their_signals():
     rng = np.random.default_rng(4)
     art = ART2(0.999).fit(rng.uniform(0, 1, (20, 5)))
@@ -181,6 +184,7 @@ def test_a_perfect_match_gives_norm_one():
     np.testing.assert_allclose(table[table.node == 0].norm_r, 1, atol=1e-12)
 
 
+@pytest.mark.thesis("eq 2.43, errata row 23")
 def test_a_negative_c_breaks_the_perfect_match():
     """The thesis prints c < 0; right is 0 < c < 1."""
     u, p = unit(np.array([1.0, 2.0])), 10 * unit(np.array([1.0, 2.0]))
@@ -189,6 +193,7 @@ def test_a_negative_c_breaks_the_perfect_match():
         assert (abs(np.linalg.norm(r) - 1) < 1e-12) == perfect
 
 
+@pytest.mark.thesis("eq 2.46, errata row 25")
 def test_norm_of_p_is_not_the_cosine_alone():
     """The thesis prints norm p = cos(u, p); right is norm p times cos(u, p)."""
     art = ART2(0.8).fit([[1.0, 0.2], [0.2, 1.0]])
@@ -215,6 +220,7 @@ def test_no_reset_while_a_new_category_is_learned(rate):
             np.testing.assert_allclose(table[table.node == 0].norm_r, 1, atol=1e-9)
 
 
+@pytest.mark.thesis("eqs 2.39 to 2.42 and 2.48, errata rows 22 and 26")
 def test_traces_start_as_they_should_and_rest_at_u_over_one_minus_d():
     m, d = 4, 0.8
     art = ART2(0.9, d=d, learning_rate=0.25, start=0.5, theta=0.0).fit([[1.0, 2.0, 3.0, 4.0]])
@@ -289,6 +295,7 @@ def test_contrast_below_theta_is_cut_or_damped():
     np.testing.assert_allclose(keep[keep.step == 0].u, x, atol=1e-12)
 
 
+@pytest.mark.thesis("eqs 2.32 to 2.35, errata row 20")
 def test_both_forms_of_f_give_theta_at_theta():
     """The thesis prints <= and >= for the linear form, which is two-valued at theta."""
     pattern = [0.8, 0.6]
@@ -340,6 +347,7 @@ def test_bad_parameters_are_refused(parameters, message):
         ART2(**parameters).fit([[0.0, 1.0]])
 
 
+@pytest.mark.thesis("errata row 30")
 def test_negative_patterns_are_refused():
     art = ART2().fit([[0.0, 1.0]])
     for method, x in ((art.fit, [[-1.0, 1.0]]), (art.trace, [-1.0, 1.0]), (art.category, [1, -1])):

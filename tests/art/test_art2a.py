@@ -67,6 +67,7 @@ def test_scale_does_not_matter(seed, vigilance):
     assert one.cluster_centers_.tobytes() == other.cluster_centers_.tobytes()
 
 
+@pytest.mark.thesis("eqs 4.1 to 4.3, errata row 31")
 def test_predict_is_the_largest_cosine_which_raw_dot_products_are_not():
     X = np.random.default_rng(0).uniform(-1, 1, (1000, 2))
     art = ART2A(0.95).fit(X)

@@ -73,6 +73,7 @@ streams = {
 }
 
 
+@pytest.mark.thesis("eqs 4.4 to 4.6, errata row 32")
 @settings(max_examples=150, deadline=None)
 @given(**streams)
 def test_centers_are_those_of_brute_force_to_the_last_bit(
@@ -145,6 +146,7 @@ def test_with_count_a_center_is_the_mean_of_its_patterns():
     np.testing.assert_allclose(art.cluster_centers_[0], X.mean(axis=0), atol=1e-15)
 
 
+@pytest.mark.thesis("errata row 19")
 def test_smaller_vigilance_makes_more_centers():
     X = np.random.default_rng(0).uniform(-1, 1, (5000, 2))
     counts = [EuclideanART(v).fit(X).n_clusters_ for v in (0.15, 0.1, 0.075, 0.05, 0.025)]

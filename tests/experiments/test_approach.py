@@ -65,6 +65,7 @@ def test_the_filters_settings_are_those_that_the_stream_measures(stream):
     assert measured.range_noise == pytest.approx(used.range_noise, rel=0.1)
 
 
+@pytest.mark.thesis("errata row 34")
 def test_only_one_of_the_two_filters_is_as_sure_of_itself_as_it_may_be():
     fresh = record_sightings(seed=77)
     n = int((fresh.visible[fresh.cycle > 0] == 1).sum())

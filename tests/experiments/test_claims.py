@@ -52,6 +52,7 @@ def test_a_number_is_inside_if_it_lies_in_the_band_to_its_digits(printed, values
     assert Claim("x", "figure 5.40", printed, "why.").verdict(np.array(values, float)) == verdict
 
 
+@pytest.mark.thesis("errata row 40")
 def test_what_the_thesis_prints_wrongly_is_told_from_what_differs_here():
     found = pd.Series({name: [value] for name, value in computed().items()})
     verdict = {
@@ -90,6 +91,7 @@ def test_differences_are_taken_seed_by_seed():
     assert judge(runs).set_index("quantity").verdict.filter(like="minus far").tolist() == [INSIDE]
 
 
+@pytest.mark.thesis("errata row 41")
 def test_the_best_number_of_states_is_that_of_the_agent_that_earns_most():
     rhos = ("0.15", "0.1", "0.075", "0.05", "0.025")
     values = {

@@ -98,6 +98,7 @@ def test_standing_still_is_standing_still():
     assert not walked(Legs(), 5, 0.0, 0.0).any()
 
 
+@pytest.mark.thesis("section 5.1.3.1, figure 5.5")
 def test_walking_straight_drifts_left_and_turns_right():
     x, y, heading = walked(Legs(variation=0.0), 20, 100, 100, start=(-2500, 0, 0))[-1]
     assert x + 2500 == pytest.approx(2000, rel=0.01)
@@ -670,6 +671,7 @@ def test_area_placement_is_uniform_on_the_field():
     assert abs(np.corrcoef(distance, orientation)[0, 1]) < 4 / math.sqrt(len(distance))
 
 
+@pytest.mark.thesis("eq 5.1, errata row 36")
 def test_thesis_placement_is_uniform_in_depth_and_then_across_the_view_triangle():
     near, far = 400.0, 4100.0
     distance, orientation = places("thesis", near, far).T
@@ -686,6 +688,7 @@ def test_thesis_placement_is_uniform_in_depth_and_then_across_the_view_triangle(
     )
 
 
+@pytest.mark.thesis("errata row 37")
 @pytest.mark.parametrize(
     ("distance", "orientation", "reward"),
     [

@@ -221,6 +221,7 @@ def test_the_learning_curve_is_the_mean_of_the_last_episodes():
 # The trajectories: 5.17 to 5.30
 
 
+@pytest.mark.thesis("figures 5.17 to 5.22, 5.24 to 5.26, 5.28 and 5.30")
 @pytest.mark.parametrize(("number", "start"), IN_VIEW.items())
 def test_a_trajectory_in_view_is_the_walk_from_its_start(number, start, agent):
     plot = FIGURES[f"5.{number}"](fresh_axes(), agent=agent)
@@ -239,6 +240,7 @@ def test_a_trajectory_in_view_is_the_walk_from_its_start(number, start, agent):
     assert f"trajectory {start}, from {STARTS[start - 1][0]:,.0f} mm" in repr(plot)
 
 
+@pytest.mark.thesis("figures 5.23, 5.27 and 5.29")
 @pytest.mark.parametrize(("number", "start"), FROM_ABOVE.items())
 def test_a_trajectory_from_above_leads_from_the_start_to_the_ball(number, start, agent):
     plot = FIGURES[f"5.{number}"](fresh_axes(), agent=agent)

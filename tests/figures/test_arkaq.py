@@ -21,6 +21,7 @@ def reached(plot, start):
     return found
 
 
+@pytest.mark.thesis("figures 3.1 and 3.2")
 @pytest.mark.parametrize("draw", [arkaq.figure_3_1, arkaq.figure_3_2])
 def test_what_is_seen_comes_back_to_the_world_as_an_action(draw):
     plot = draw(Figure(layout="constrained").subplots())
@@ -50,6 +51,7 @@ DRAWN = [
 ]
 
 
+@pytest.mark.thesis("figures 5.6, 5.15, 5.34 and 5.38, errata row 39")
 @pytest.mark.parametrize(("figure", "table"), DRAWN)
 def test_every_state_and_transition_of_the_table_is_drawn(figure, table):
     plot = figure(Figure(layout="constrained").subplots())

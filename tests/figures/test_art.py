@@ -70,10 +70,12 @@ ART2_WIRES = {
 }  # fmt: skip
 
 
+@pytest.mark.thesis("figure 2.20")
 def test_art2_is_wired_as_its_equations_are():
     assert set(art.figure_2_20(fresh_axes()).wires) == ART2_WIRES
 
 
+@pytest.mark.thesis("figure 2.19")
 def test_art1_has_two_of_three_at_f1_and_resets_f2():
     wires = set(art.figure_2_19(fresh_axes()).wires)
     assert {source for source, target in wires if target == "F1"} == {"I", "gain 1", "F2"}
@@ -81,6 +83,7 @@ def test_art1_has_two_of_three_at_f1_and_resets_f2():
     assert ("A", "F2") in wires and ("F2", "gain 1") in wires
 
 
+@pytest.mark.thesis("figures 2.18 to 2.20")
 @pytest.mark.parametrize("number", DIAGRAMS)
 def test_an_arrow_between_parts_ends_at_them(number):
     plot = DIAGRAMS[number](fresh_axes())

@@ -44,6 +44,7 @@ def test_a_figure_draws_where_it_is_told_and_states_a_fact(number, monkeypatch):
     assert left <= title.x0 and title.x1 <= right and title.y1 <= top
 
 
+@pytest.mark.thesis("figures 5.35 to 5.37")
 @pytest.mark.parametrize("vigilance", [0.075, 0.06, 0.05, 0.3])
 def test_centers_stand_on_the_line_where_the_network_put_them(vigilance):
     stream = goal.patterns(goal.load_sightings())
@@ -74,6 +75,7 @@ def test_the_stream_is_drawn_as_often_as_it_was_seen():
     assert (tops - base) / (tops - base).max() == pytest.approx(counts / counts.max())
 
 
+@pytest.mark.thesis("figure 5.39")
 def test_every_state_shows_its_greedy_action_in_its_color(agent):
     plot = figures.figure_5_39(fresh_axes(), goal_agent=agent)
     centers, chosen = agent.art.cluster_centers_.ravel() / 2, agent.q.Q.argmax(axis=1)
@@ -93,6 +95,7 @@ def test_only_a_scorer_has_a_figure_5_39(who):
         figures.figure_5_39(fresh_axes(), goal_agent=who)
 
 
+@pytest.mark.thesis("figures 5.40 and 5.41")
 @pytest.mark.parametrize("distance", ["near", "far"])
 def test_curves_are_means_and_bands_over_the_seeds(distance):
     study = goal.load_study()

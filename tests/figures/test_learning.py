@@ -25,6 +25,7 @@ def by_hand(delay, reward, horizon, gamma):
     )
 
 
+@pytest.mark.thesis("figure 2.1")
 def test_the_loop_closes_through_indication_reward_and_policy(ax):
     plot = learning.figure_2_1(ax)
     after = {}

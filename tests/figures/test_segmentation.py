@@ -63,6 +63,7 @@ def test_draws_centers_in_the_robots_view():
     assert one != other and {one, other} <= set(style.CELLS)
 
 
+@pytest.mark.thesis("figures 5.10 to 5.14")
 @pytest.mark.parametrize("vigilance", FIGURES)
 def test_a_figure_prints_the_thesiss_count_and_ours(vigilance):
     patterns = triangle_stream(1500)

@@ -31,6 +31,7 @@ def assert_close(ours, theirs, tolerance=1e-10, beside=0):
     np.testing.assert_allclose(ours, theirs, rtol=0, atol=tolerance * scale)
 
 
+@pytest.mark.thesis("eqs 2.53 to 2.59")
 @settings(max_examples=120, deadline=None)
 @given(systems())
 def test_agrees_with_filterpy(drawn):
@@ -70,6 +71,7 @@ def test_scalar_gain_settles_where_the_riccati_equation_says():
     assert trace.K[-1, 0, 0] == pytest.approx(P_prior / (P_prior + r), rel=1e-13)
 
 
+@pytest.mark.thesis("eq 2.54, errata row 27")
 @pytest.mark.parametrize("r", [1e-9, 0.0])
 def test_without_noise_the_gain_is_a_right_inverse(r):
     """After eq 2.54 the thesis says K = H^-1, but H is 2 x 4: what holds is H K = I."""
@@ -81,6 +83,7 @@ def test_without_noise_the_gain_is_a_right_inverse(r):
     assert not np.allclose(kf.K @ kf.H, np.eye(4), atol=0.1)
 
 
+@pytest.mark.thesis("errata row 35")
 def test_a_jump_of_the_distance_takes_the_thesis_filter_thirty_updates():
     A, H = constant_velocity(1.0, 2)
     kf = KalmanFilter(A, H, np.diag([0.001, 0.0001, 0.0001, 0.000001]), np.diag([100.0, 0.05]))

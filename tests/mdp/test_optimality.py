@@ -22,6 +22,7 @@ def test_figure_2_2_to_the_printed_digits():
     assert average_reward(world)[0].tolist() == [2, 10, 11]
 
 
+@pytest.mark.thesis("errata row 2")
 def test_each_model_prefers_another_action():
     """The thesis reads from the discounted sums that the infinite horizon "must be preferred"."""
     world = delayed_rewards()
@@ -29,6 +30,7 @@ def test_each_model_prefers_another_action():
     assert [int(Q[0].argmax()) for Q in models] == [0, 1, 2]
 
 
+@pytest.mark.thesis("errata row 1")
 def test_the_sum_to_k_inclusive_is_one_reward_too_many_and_flips_the_choice():
     """Equation 2.1 sums t = 0..k; that gives 8, 10, 0 where figure 2.2 prints 6, 0, 0."""
     inclusive = finite_horizon(delayed_rewards(), 5 + 1)[-1, 0]
@@ -53,6 +55,7 @@ def test_delayed_rewards_have_closed_forms(chains, gamma, horizon):
     assert world.start.tolist() == [1.0] + [0.0] * sum(delays)
 
 
+@pytest.mark.thesis("errata row 3")
 def test_finite_depends_on_h_discounted_on_gamma_average_on_neither():
     choices = {g: int(discounted(delayed_rewards(gamma=g))[0].argmax()) for g in (0.3, 0.9, 0.95)}
     assert choices == {0.3: 0, 0.9: 1, 0.95: 2}

@@ -66,6 +66,7 @@ def test_values_agree_with_the_linear_program(seed):
     np.testing.assert_allclose(value_iteration(mdp)[0], value_by_linear_program(mdp), atol=1e-5)
 
 
+@pytest.mark.thesis("eq 2.6, eq 2.8, errata row 6")
 @settings(max_examples=40, deadline=None)
 @given(seeds, st.sampled_from([1.0, 1e-3, 1e-8]))
 def test_value_iteration_is_as_close_as_it_says(seed, tol):
@@ -111,6 +112,7 @@ def test_horizons_one_by_one_lead_to_the_endless_one():
         assert np.abs(values - exact).max() <= 0.9**h * np.abs(mdp.R).max() / 0.1
 
 
+@pytest.mark.thesis("errata row 5")
 def test_the_first_reward_is_not_discounted():
     """Thesis equation 2.7 prints V1 = gamma max R; from V0 = 0, equation 2.8 gives max R."""
     mdp = random_mdp(3, gamma=0.5)

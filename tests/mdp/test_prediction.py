@@ -53,11 +53,13 @@ def test_monte_carlo_is_the_mean_of_the_returns_of_all_visits():
     assert monte_carlo([one, two], 3, 0.5).tolist() == [3.5, 7.0, 0.0]
 
 
+@pytest.mark.thesis("errata row 7")
 def test_constant_alpha_monte_carlo_is_equation_2_10():
     episodes = [Episode(np.array([0, 1]), np.array([0]), np.array([r]), True) for r in (8.0, 4.0)]
     assert monte_carlo(episodes, 2, 0.9, alpha=0.5, initial=2.0)[0] == (2 + 8) / 2 / 2 + 4 / 2
 
 
+@pytest.mark.thesis("errata row 8")
 def test_td_error_takes_the_value_of_the_next_state_not_the_return():
     """Equation 2.11 prints r + gamma R_t; with R_t the return from t this counts r twice."""
     episode = Episode(np.array([0, 1, 2]), np.zeros(2, int), np.array([6.0, 8.0]), True)

@@ -37,6 +37,7 @@ def test_chain_learned_backwards_is_exact():
     assert learner.visits[:, 0].tolist() == [1, 1, 1, 1, 0]
 
 
+@pytest.mark.thesis("eq 2.12")
 @settings(max_examples=25, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), S=st.integers(1, 8), A=st.integers(1, 4))
 def test_deterministic_outcomes_with_alpha_one_reach_optimal_q(seed, S, A):
@@ -51,6 +52,7 @@ def test_deterministic_outcomes_with_alpha_one_reach_optimal_q(seed, S, A):
     np.testing.assert_allclose(learner.Q, optimal_q(T, R, 0.6), rtol=1e-13, atol=1e-13)
 
 
+@pytest.mark.thesis("errata row 9")
 def test_random_outcomes_converge_under_robbins_monro_and_not_under_alpha_one():
     rng = np.random.default_rng(5)
     T, R = random_mdp(rng, 4, 2)
@@ -74,6 +76,7 @@ def test_random_outcomes_converge_under_robbins_monro_and_not_under_alpha_one():
     assert error["one"] > 0.3
 
 
+@pytest.mark.thesis("eq 2.12")
 def test_one_over_visits_is_the_mean_of_the_targets():
     rewards = np.random.default_rng(0).normal(size=100)
     learner = QLearner(1, 1, alpha="1/visits", gamma=0.0, initial=1e6)
@@ -155,6 +158,7 @@ def test_boltzmann_limits():
     assert learner.probabilities(0, 1e-3)[0] == 1.0
 
 
+@pytest.mark.thesis("errata row 28")
 def test_boltzmann_sees_differences_only():
     """A constant on all values leaves the choice alone, even one that swallows small gaps."""
     learner = QLearner(1, 2, alpha=1.0, gamma=0.0)
@@ -162,6 +166,7 @@ def test_boltzmann_sees_differences_only():
     assert learner.probabilities(0, 1.0)[1] == pytest.approx(1 / (1 + math.exp(-1)), rel=1e-14)
 
 
+@pytest.mark.thesis("errata row 29")
 def test_greedy_shares_ties_evenly():
     learner = QLearner(1, 5, alpha=1.0, gamma=0.0, rng=4)
     learner.Q[0] = [2.0, -1.0, 2.0, 1.999, 2.0]

@@ -40,6 +40,7 @@ def test_holding_ends_when_the_state_changes():
     assert env.actions == [7, 7, 7]
 
 
+@pytest.mark.thesis("errata row 33")
 def test_holding_an_action_that_never_changes_the_state_is_capped():
     env = Script(*[(0, 1.0, False, False)] * 50, n_actions=3)
     env.reset()

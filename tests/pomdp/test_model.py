@@ -57,6 +57,7 @@ def test_a_model_cannot_be_written_to_nor_through(name):
         getattr(pomdp, name)[...] = 0
 
 
+@pytest.mark.thesis("errata row 10")
 @pytest.mark.parametrize(
     ("change", "said"),
     [
@@ -187,6 +188,7 @@ def by_enumeration(pomdp, b, a, z):
     return chance_of
 
 
+@pytest.mark.thesis("errata row 13")
 @settings(max_examples=100, deadline=None)
 @given(look=looks())
 def test_equation_2_15_by_enumeration(look):
@@ -217,6 +219,7 @@ def test_what_is_expected_after_all_observations_is_the_prediction(look):
             assert np.isnan(beliefs[z]).all()
 
 
+@pytest.mark.thesis("eq 2.17")
 @settings(max_examples=50, deadline=None)
 @given(look=looks(), mix=st.floats(0, 1))
 def test_prediction_and_reward_are_linear_in_the_belief(look, mix):
@@ -329,7 +332,7 @@ def test_dense_tables_that_do_not_fit_are_not_made():
 # The thesis
 
 
-def test_erratum_11_the_floors_after_one_step_down():
+def test_errata_11_the_floors_after_one_step_down():
     floors = problem("floors")
     down = floors.actions.index("down")
     assert floors.states == ("fourth", "third", "second", "first")  # the order of the thesis

@@ -140,6 +140,7 @@ def test_a_coarse_tolerance_leaves_out_what_adds_little():
 # --- domination: thesis 2.3.6 and figure 2.17 -----------------------------------------------------
 
 
+@pytest.mark.thesis("errata row 18")
 def test_figure_2_17_pc_is_dominated_only_jointly():
     pa, pb, pc, pd = A = np.array([[4, 0], [0, 4], [1.8, 1.8], [1.5, 1.5]])
     # Comparing two at a time finds only p_d.

@@ -101,6 +101,7 @@ def test_one_more_step_is_one_backup(seed):
         assert V.action(b) == V.actions[V.best(b)]
 
 
+@pytest.mark.thesis("errata row 16")
 def test_figure_2_16_a1_is_preferred_on_the_right():
     """By figure 2.8's axis p(s1) grows to the right, and a1 wins above 0.6."""
     pomdp = POMDP([np.eye(2)] * 2, np.full((2, 2, 1), 1.0), [[1, 0], [0, 1.5]], 0.9)
@@ -224,6 +225,7 @@ def test_a_large_policy_graph_is_evaluated_alike(monkeypatch):
     np.testing.assert_allclose(graph.values(pomdp), at_once, atol=1e-10)
 
 
+@pytest.mark.thesis("errata row 17")
 @pytest.mark.parametrize("name", ["floors", "corridor", "tiger", "two_state", "ball_side"])
 def test_the_problems_of_the_course(name):
     pomdp = problem(name)

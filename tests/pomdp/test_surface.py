@@ -24,6 +24,7 @@ from arkaq_edu.pomdp.surface import CENTERED
 BELIEFS = np.linspace(0, 1, 201)
 
 
+@pytest.mark.thesis("eq 2.23, errata row 15")
 @pytest.mark.parametrize(("name", "horizon"), [("tiger", 1), ("two_state", 1), ("two_state", 2)])
 def test_the_upper_surface_is_the_best_of_all_plans_there_are(name, horizon):
     model = problem(name)
