@@ -115,7 +115,7 @@ def test_an_exercise_is_failed_hinted_and_solved(student, clone):
     last = len(sources) - 1
     write(last, sources[last])
     expect(cells.nth(last).locator(".jp-OutputArea")).to_contain_text(
-        "kalman: 1 of 3 exercises solved; still open: combine, turn"
+        "kalman: 1 of 4 exercises solved; still open: combine, turn, what_to_change"
     )
     page.evaluate("jupyterapp.commands.execute('docmanager:save')")
     assert (clone / "arkaq-course" / "progress.json").exists()
