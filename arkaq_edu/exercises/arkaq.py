@@ -1,6 +1,7 @@
 """Exercises of chapter 9: decide, a grid of cells, the target of SARSA, a clear difference."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from arkaq_edu.exercises.exercise import Draws, Part, exercise, index
 
@@ -12,7 +13,7 @@ def _robots(rng: np.random.Generator) -> Draws:
     ]
 
 
-@exercise(Part(_robots, answer=index("action", lambda x, m, Q: Q.shape[1], "not a value of Q")))
+@exercise(Part(_robots, answer=index("an action", lambda x, m, Q: Q.shape[1], "not a value of Q")))
 def decide(pattern, centers, Q):
     """Return the best action for a pattern: the nearest center's row of Q decides.
 
@@ -64,9 +65,13 @@ def sarsa_target(r, n, gamma, next_values, a_next, ended):
     return r + gamma**n * next_values[a_next]
 
 
+def _beyond(a: NDArray[np.float64], b: NDArray[np.float64], errors: float) -> bool:
+    return bool(abs(a.mean() - b.mean()) >= errors)
+
+
 def _groups(rng: np.random.Generator) -> Draws:
     cases = []
-    for gap in (0.0, 0.5, 0.9, 1.1, 1.5, 2.0, 2.6, 3.5) * 5:
+    for gap in (0.0, 0.5, 0.9, 1.0, 1.1, 1.5, 2.0, 3.0, 8.0) * 5:
         n, m = rng.integers(4, 30, 2)
         a, b = rng.normal(0.7, 0.1, n), rng.normal(0.7, 0.25, m)
         error = np.sqrt(a.var(ddof=1) / n + b.var(ddof=1) / m)

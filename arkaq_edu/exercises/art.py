@@ -55,7 +55,7 @@ def _searches(rng: np.random.Generator) -> Draws:
     Part(
         _searches,
         answer=index(
-            "node", lambda x, Z, reset: len(Z), "which one it is, not how large its signal"
+            "a node", lambda x, Z, reset: len(Z), "which one it is, not how large its signal"
         ),
     )
 )

@@ -9,6 +9,7 @@ import copy
 import functools
 import html
 import inspect
+import itertools
 import os
 import sys
 import tomllib
@@ -23,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arkaq_edu.exercises import solved
-from arkaq_edu.exercises.words import as_floats, given, in_words, short
+from arkaq_edu.exercises.words import as_floats, given, in_shapes, in_words, misfit, short
 
 #: A way to compute an answer from the arguments of a case.
 Rule = Callable[..., Any]
@@ -104,7 +105,11 @@ def ask(function: Callable[..., Any], *arguments: Any) -> Any:
         asked = ", ".join(map(short, arguments))
         asked = "..." if "\n" in asked or len(asked) > 90 else asked
         problem = f"{name}({asked}) stopped with {type(error).__name__}: {error}"
-        raise ExerciseError(problem + _where(error, function)) from error
+        advice = misfit(error)
+        if advice:
+            problem = f"{name} puts together arrays that do not fit"
+            advice = f"\n{in_shapes(inspect.signature(function), arguments)}\n{advice}"
+        raise ExerciseError(problem + _where(error, function) + advice) from error
     if answer is None:
         raise ExerciseError(f"{name} returned nothing: does it end with a `return`?")
     if not all(np.array_equal(a, b) for a, b in zip(arguments, copies, strict=True)):
@@ -161,8 +166,6 @@ class Part:
         found, wanted = as_floats(answer), as_floats(other)
         if found is None or wanted is None:
             return False
-        if found.size == wanted.size == 1:
-            found = found.reshape(wanted.shape)
         return found.shape == wanted.shape and bool(np.all(self.close(found, wanted)))
 
 
@@ -222,6 +225,7 @@ class Exercise:
     points: int = 2
     _hinted: int = field(default=0, init=False)
     _failed: int = field(default=0, init=False)
+    _boxed: bool = field(default=False, init=False)
 
     def __post_init__(self) -> None:
         functools.update_wrapper(self, self.right)
@@ -254,7 +258,8 @@ class Exercise:
         -------
         callable
             The student's function if it is right, else the course's own. So a page can be read,
-            and run, to its end.
+            and run, to its end. A right number in an array of its own is right, but a page cannot
+            print it.
         """
         graded = "NBGRADER_EXECUTION" in os.environ
         steps: Iterable[Verdict] = self._steps(function, 0 if graded and rng is None else rng)
@@ -274,9 +279,13 @@ class Exercise:
             self._failed = 0
             solved.add(self.name)
             print(self.praise)
+            if self._boxed:
+                print(
+                    "(Yours returns each number in an array; the page goes on with plain numbers.)"
+                )
         if graded:
             sys.displayhook(self._points(steps))
-        return self.right if wrong else function
+        return self.right if wrong or self._boxed else function
 
     def problem(self, function: Rule, rng: np.random.Generator | int | None = None) -> str:
         """Return what is wrong with a function first, on fresh cases; nothing if it is right."""
@@ -302,7 +311,7 @@ class Exercise:
             return
         rng = np.random.default_rng(rng)
         cases: Sequence[tuple[Any, ...]] = []
-        known = ""
+        known, self._boxed = "", False
         for part in self.parts:
             cases = part.cases(rng) if part.cases else cases
             try:
@@ -362,8 +371,13 @@ class Exercise:
         self, part: Part, function: Rule, cases: Sequence[tuple[Any, ...]]
     ) -> tuple[float, str]:
         """Return what share of a step is right, and what is wrong with it, or nothing."""
-        answers = [part.answer(function, *case) for case in cases]
         wanted = [np.asarray((part.right or self.right)(*case)) for case in cases]
+        answers = [
+            self._unboxed(part.answer(function, *case), value)
+            for case, value in zip(cases, wanted, strict=True)
+        ]
+        several = not (part.right or isinstance(self.returns, str))
+        swapped = several and self._swapped(part, answers, wanted)
         if part.of:
             k = self.returns.index(part.of)
             answers = [self.numbers(answer, (len(self.returns),))[k] for answer in answers]
@@ -371,6 +385,9 @@ class Exercise:
         good = part.agree(answers, wanted)
         if all(good):
             return 1.0, ""
+        if swapped:
+            order = ", then the ".join(self.returns)
+            return 0.0, f"the numbers are right, but not their order: return first the {order}"
         # Rules come before the shape: some wrong answers have another shape, and better words.
         for expression, words in part.wrong.items():
             rule = self.function(expression)
@@ -401,6 +418,24 @@ class Exercise:
                 return share, self._evaluate(f"f{words!r}", names)
         smallest = min(wrong, key=lambda trio: sum(map(np.size, trio[-1])))
         return share, self._example(part, sum(good), len(cases), *smallest)
+
+    def _unboxed(self, answer: Any, wanted: NDArray[Any]) -> Any:
+        """Return an answer without the array that each of its numbers may be in."""
+        found = as_floats(answer)
+        if found is None or found.shape == wanted.shape or found.size != wanted.size:
+            return answer
+        if found.size > 1 and (isinstance(self.returns, str) or len(found) != len(self.returns)):
+            return answer
+        self._boxed = True
+        return found.reshape(wanted.shape)
+
+    def _swapped(self, part: Part, answers: Sequence[Any], wanted: Sequence[Any]) -> bool:
+        """Say whether all numbers are right, in another order."""
+        rows, count = [as_floats(answer) for answer in answers], len(self.returns)
+        if any(row is None or row.shape != (count,) for row in rows):
+            return False
+        orders = itertools.permutations(range(count))
+        return any(np.all(part.close(np.array(rows)[:, order], wanted)) for order in orders)
 
     def _share(
         self, part: Part, answers: Sequence[Any], wanted: Sequence[Any], right: Any
@@ -511,7 +546,7 @@ def index(
         value = value.reshape(()) if value.size == 1 else value
         if value.shape != () or value.dtype.kind not in "iu" or not 0 <= value < n:
             raise ExerciseError(
-                f"the answer should be the index of a {thing}, a whole number from 0 to {n - 1}, "
+                f"the answer should be the index of {thing}, a whole number from 0 to {n - 1}, "
                 f"not {short(found)}: {hint}"
             )
         return int(value)

@@ -51,7 +51,11 @@ def _intervals(rng: np.random.Generator) -> Draws:
     return cases
 
 
-@exercise(Part(_intervals, answer=_whole("centers")))
+@exercise(
+    between=Part(_intervals, answer=_whole("centers")),
+    # Binary fractions: here the gaps fit whole.
+    border=Part(lambda rng: [(0.25, 1.0), (0.125, 1.5)], answer=_whole("centers")),
+)
 def state_bounds(vigilance, width):
     """Return the fewest and the most centers that can be founded.
 
@@ -68,7 +72,7 @@ def _enough(p: float, q: float, sigmas: float) -> float:
 
 def _robots(rng: np.random.Generator) -> Draws:
     """Draw chances for which rounding up and rounding down differ clearly."""
-    cases: Draws = [(0.6, 0.35, 2.0)]
+    cases: Draws = [(0.6, 0.35, 2.0), (0.5, 0.25, 2.0)]
     while len(cases) < 12:
         p, q, sigmas = rng.uniform([0.05, 0.05, 1.5], [0.95, 0.95, 3.5])
         if abs(p - q) > 0.05 and 0.1 < _enough(p, q, sigmas) % 1 < 0.9:

@@ -31,6 +31,7 @@ def _steps(rng: np.random.Generator) -> Draws:
     estimate=Part(_steps),
     variance=Part(),
     unseen=Part(lambda rng: [(x, P, u, None, Q, R) for x, P, u, _, Q, R in _steps(rng)]),
+    zero=Part(lambda rng: [(x, P, u, 0.0, Q, R) for x, P, u, _, Q, R in _steps(rng)]),
 )
 def turn(x, P, u, z, Q, R):
     """Return estimate and variance after a step u and a sighting z, or None.

@@ -55,7 +55,7 @@ def _four_machines(rng: np.random.Generator, epsilon: float) -> Draws:
     return [(means, epsilon, int(rng.integers(2**32)))]
 
 
-_machine = index("machine", lambda means, epsilon, rng: len(means))
+_machine = index("a machine", lambda means, epsilon, rng: len(means))
 
 
 def _shares(

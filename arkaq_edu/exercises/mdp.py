@@ -15,8 +15,9 @@ from arkaq_edu.exercises.exercise import (
 )
 
 #: A rate is tried on so many visits. Then at most so much may be left of the first value, and of
-#: the standard deviation of a single target: 1/n passes, and n^-p with p from 0.55 to 1.
-VISITS, START_LEFT, SCATTER_LEFT = 100_000, 0.01, 0.035
+#: the standard deviation of a single target, and the rate must be so many times 1/n: n^-p passes
+#: with p from 0.55 to 0.9.
+VISITS, START_LEFT, SCATTER_LEFT, SLOWER = 100_000, 0.01, 0.035, 3.0
 
 
 def _q(T, R, gamma, V):
@@ -74,7 +75,7 @@ def td(v, r, v_next, ended, alpha, gamma):
 
 
 def _after_many_visits(function: Rule) -> NDArray[np.float64]:
-    """Return what is left of the first value and of a target's scatter, and the last rate."""
+    """Return what is left of the first value, of a target's scatter, and 1/n by the last rate."""
     for n in (1, 2, 3):
         rate.numbers(ask(function, n), ())
     start, variance, alpha = 1.0, 0.0, 0.0
@@ -84,14 +85,14 @@ def _after_many_visits(function: Rule) -> NDArray[np.float64]:
             raise ExerciseError(f"rate({n}) is {alpha:.4g}: a learning rate lies between 0 and 1")
         start *= 1 - alpha
         variance = (1 - alpha) ** 2 * variance + alpha**2
-    return np.array([start, variance**0.5, alpha])
+    return np.array([start, variance**0.5, 1 / max(VISITS * alpha, 1e-9)])
 
 
 @exercise(
     Part(
         lambda rng: [()],
         answer=_after_many_visits,
-        right=lambda: [START_LEFT, SCATTER_LEFT, 1.0],
+        right=lambda: [START_LEFT, SCATTER_LEFT, 1 / SLOWER],
         close=np.less_equal,
     )
 )

@@ -26,8 +26,8 @@ def scale(distance, orientation):
 
 @exercise(
     Part(
-        lambda rng: [(rng.uniform(-1, 1, 2), rng.uniform(-1, 1, (n, 2))) for n in range(1, 41)],
-        answer=index("center", lambda x, m: len(m), "which one it is, not how far or where"),
+        lambda rng: [(rng.uniform(-1, 1, 2), rng.uniform(-1, 1, (n, 2))) for n in range(2, 42)],
+        answer=index("a center", lambda x, m: len(m), "which one it is, not how far or where"),
     )
 )
 def nearest(pattern, centers):

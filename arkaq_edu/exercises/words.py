@@ -79,3 +79,38 @@ def given(signature: inspect.Signature, case: tuple[Any, ...]) -> str:
     if "\n" in line or len(line) > _WIDEST:
         line = "\n    ".join(texts)
     return f"    {line}"
+
+
+def in_shapes(signature: inspect.Signature, case: tuple[Any, ...]) -> str:
+    """Return how many numbers each array among the inputs of one try has.
+
+    Examples
+    --------
+    >>> print(in_shapes(inspect.signature(lambda b, T, n: b @ T), (np.ones(2), np.eye(2), 3)))
+        b: 2 numbers; T: 2 rows of 2 numbers
+    """
+    arrays = [(name, v) for name, v in zip(signature.parameters, case, strict=False) if np.ndim(v)]
+    return "    " + "; ".join(f"{name}: {in_words(np.shape(value))}" for name, value in arrays)
+
+
+def misfit(error: Exception) -> str:
+    """Return what to look at if numpy says that two arrays do not fit, or nothing.
+
+    Examples
+    --------
+    >>> misfit(ZeroDivisionError("division by zero"))
+    ''
+    """
+    if not isinstance(error, ValueError):
+        return ""
+    if "matmul" in str(error) or "not aligned" in str(error):
+        return (
+            "In x @ M, x has a number for each row of M; in M @ x, one for each column. Is one of "
+            "them on the wrong side, or is the order of the products another one?"
+        )
+    if "could not be broadcast" in str(error):
+        return (
+            "Number by number, both need equal shapes, or equal last lengths. b[:, np.newaxis] "
+            "makes a column of b, and M.T exchanges the rows and columns of M."
+        )
+    return ""

@@ -70,6 +70,14 @@ WRONG = [
     ),
     (exercises.predict, lambda b, T: 2 * (b @ T), "too large"),
     (exercises.predict, lambda b, T: b @ T / 2, "too small"),
+    (exercises.predict, lambda b, T: normed(1.0 * (b @ T > 0)), "figure 2.6"),
+    (exercises.predict, lambda b, T: T[b > 0].mean(axis=0), "possible starts alike"),
+    (exercises.correct, lambda b, seen: normed(1.0 * (b * seen > 0)), "figure 2.6"),
+    (exercises.expected_reward, lambda b, R: R[b > 0].mean(axis=0), "possible states alike"),
+    (exercises.expected_reward, lambda b, R: R @ b, "do not fit.*wrong side"),
+    (exercises.expected_reward, lambda b, R: np.dot(R, b), "do not fit.*wrong side"),
+    (exercises.expected_reward, lambda b, R: (b * R).sum(axis=0), "do not fit.*Number by number"),
+    (exercises.observation_chances, lambda b, T, O_a: O_a @ (b @ T), "order of the products"),
     (exercises.predict, not_written, "still empty"),
     (exercises.predict, lambda b, T: None, "return"),
     (exercises.predict, lambda b, T: T[len(b)], "stopped with IndexError"),
@@ -120,4 +128,4 @@ WRONG = [
 @pytest.mark.parametrize(("exercise", "answer", "hint"), WRONG)
 @pytest.mark.filterwarnings("ignore:(divide|invalid):RuntimeWarning")
 def test_a_wrong_answer_is_told_what_is_wrong(exercise, answer, hint, seed):
-    assert re.search(hint, exercise.problem(answer, rng=seed))
+    assert re.search(hint, exercise.problem(answer, rng=seed), re.DOTALL)

@@ -50,6 +50,29 @@ def test_a_known_wrong_answer_gets_its_own_words(exercise, part, expression, wor
     assert alone.problem(answer, rng=0) == words
 
 
+#: Known mistakes of the exercises that are judged by what they do, not by a formula.
+IN_WHAT_THEY_DO = {
+    "epsilon_greedy": ["means.argmin()", "means.argmax()", "int(rng.integers(len(means)))"],
+    "rate": ["0.1", "1 / n", "1 / n**2", "0.5**n"],
+    "present": [
+        "np.vstack([centers, pattern])",
+        "centers",
+        "centers + eta * (pattern - centers)",
+        "np.where(np.arange(len(centers))[:, None] == nearest(pattern, centers), pattern, centers)",
+    ],
+}
+
+
+@pytest.mark.parametrize("exercise", ALL)
+def test_three_wrong_answers_at_least_are_told_apart(exercise):
+    """That each rule gets its own words is tested above; here what is judged otherwise, too."""
+    words = {words for other, _, _, words in rules() if other is exercise}
+    for expression in IN_WHAT_THEY_DO.get(exercise.name, ()):
+        words.add(exercise.problem(exercise.function(expression), rng=0))
+    assert len(words) >= 3
+    assert not [said for said in words if "tries. In this one" in said]
+
+
 @pytest.mark.parametrize("exercise", ALL)
 def test_an_exercise_says_what_is_asked_and_gives_three_hints_and_a_solution(exercise, capsys):
     assert repr(exercise).startswith(f"{exercise.name}(") and ": Return " in repr(exercise)
@@ -220,6 +243,31 @@ def test_a_right_one_by_one_answer_and_one_that_warns_are_accepted(nis):
     assert nis.problem(answer) == ""
 
 
+def test_right_numbers_in_arrays_of_their_own_are_right_and_the_page_goes_on(capsys):
+    for name in ("nis", "turn", "state_bounds", "worth"):
+        exercise = dataclasses.replace(getattr(exercises, name))
+
+        def answer(*case, exercise=exercise):
+            results = exercise(*case)
+            boxes = [np.array([[x]]) for x in np.atleast_1d(results)]
+            return boxes[0] if np.ndim(results) == 0 else boxes
+
+        goes_on = exercise.check(answer)
+        assert capsys.readouterr().out.startswith(exercise.praise), name
+        assert np.shape(goes_on(*exercise.parts[0].cases(np.random.default_rng())[0])) in ((), (2,))
+
+
+def test_arrays_that_do_not_fit_are_told_their_shapes_and_the_line():
+    def expected_reward(b, R):
+        return R @ b
+
+    said = exercises.expected_reward.problem(expected_reward, rng=0).splitlines()
+    assert said[0] == "expected_reward puts together arrays that do not fit"
+    assert said[1].endswith("of your cell: return R @ b")
+    assert said[2] == "    b: 5 numbers; R: 5 rows of 6 numbers"
+    assert "on the wrong side" in said[3] and "gufunc" not in "".join(said)
+
+
 def test_a_rounded_answer_is_told_so(nis):
     assert "you round the answer" in nis.problem(lambda v, S: round(exercises.nis(v, S), 2))
 
@@ -241,7 +289,7 @@ def test_parts_count():
     turn, bounds, nis = exercises.turn, exercises.state_bounds, exercises.nis
     assert turn.points == 4 and bounds.points == 3 and nis.points == 2
     assert turn.earned(lambda *case: (turn(*case)[0], 7.0)) == 2.0, "half of each step"
-    assert turn.earned(lambda x, P, u, z, Q, R: (x + u, P + Q)) == 1.33, "right if nothing is seen"
+    assert turn.earned(lambda x, P, u, z, Q, R: (x + u, P + Q)) == 1.0, "right if nothing is seen"
     assert bounds.earned(lambda v, w: (bounds(v, w)[0], 99)) == 1.5
     calls = iter(range(10_000))
     assert nis.earned(lambda *case: nis(*case) + next(calls) % 2) == 1.0

@@ -91,7 +91,7 @@ WRONG = [
         "turn first",
     ),
     (exercises.pose, bent(lambda a, b, x, y, h: (x, -y, h)), "y is on the wrong side"),
-    (exercises.pose, bent(lambda a, b, x, y, h: (y, x, h)), "swapped"),
+    (exercises.pose, bent(lambda a, b, x, y, h: (y, x, h)), "first the x, then the y"),
     (exercises.pose, bent(lambda a, b, x, y, h: (x + 30, y, h)), "x is right in 0 of 10"),
     (exercises.pose, bent(lambda a, b, x, y, h: (x, y, h + 0.1)), "heading is right in 0 of 10"),
     (exercises.pose, divided, "but for equal footsteps"),

@@ -23,7 +23,7 @@ def worth(now, then, gamma, cost):
 
 
 def state_bounds(vigilance, width):
-    return math.ceil(width / vigilance / 2), math.ceil(width / vigilance)
+    return width // (2 * vigilance) + 1, width // vigilance + 1
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -60,7 +60,11 @@ def not_written(*_):
 
 
 WRONG = [
-    (exercises.kicks_needed, lambda p, q, z: kicks_needed(p, q, z) - 1, "you round down"),
+    (
+        exercises.kicks_needed,
+        lambda p, q, z: (z**2 * (p * (1 - p) + q * (1 - q)) / (p - q) ** 2) // 1,
+        "you round down",
+    ),
     (exercises.kicks_needed, lambda p, q, z: 2 * kicks_needed(p, q, z), "both robots together"),
     (exercises.kicks_needed, of_each(lambda p, q: p * (1 - p)), "only the first robot"),
     (exercises.kicks_needed, of_each(lambda p, q: q * (1 - q)), "only the second robot"),
@@ -83,7 +87,7 @@ WRONG = [
     (exercises.kicks_needed, lambda p, q, z: z**2 / (p - q) ** 2, "a number of kicks is whole"),
     (exercises.kicks_needed, lambda p, q, z: kicks_needed(p, q, 2 * z), "0 of 12 tries"),
     (exercises.kicks_needed, not_written, "still empty"),
-    (exercises.worth, lambda *case: worth(*case)[::-1], "the turn second"),
+    (exercises.worth, lambda *case: worth(*case)[::-1], "first the kick, then"),
     (exercises.worth, kicking(lambda p, g, c: 100 * p + c), "not worth 0: it is punished by -100$"),
     (exercises.worth, kicking(lambda p, g, c: 100 * p), "and a kick takes a cycle"),
     (exercises.worth, kicking(lambda p, g, c: 200 * p - 100), "a kick takes a cycle too"),
@@ -107,8 +111,13 @@ WRONG = [
     (exercises.state_bounds, lambda v, w: (w // (2 * v) + 1, w // v), "n - 1 gaps"),
     (exercises.state_bounds, lambda v, w: (w // (2 * v), w // v + 1), "to the end of the interval"),
     (exercises.state_bounds, lambda v, w: (w // v + 1, w // v + 1), "the same"),
+    (
+        exercises.state_bounds,
+        lambda v, w: (math.ceil(w / v / 2), math.ceil(w / v)),
+        "forget the last center",
+    ),
     (exercises.state_bounds, lambda v, w: (w / (2 * v), w / v), "a number of centers is whole"),
-    (exercises.state_bounds, lambda v, w: state_bounds(v, w)[::-1], "the fewest come first"),
+    (exercises.state_bounds, lambda v, w: state_bounds(v, w)[::-1], "first the fewest"),
     (exercises.state_bounds, lambda v, w: state_bounds(2 * v, w), "0 of 12 tries"),
     (exercises.state_bounds, not_written, "still empty"),
 ]

@@ -40,12 +40,10 @@ def test_a_right_answer_is_praised(exercise, answer, seed, capsys):
 @pytest.mark.parametrize(
     "rate",
     [
-        lambda n: 1 / n,
         lambda n: 0.5 / n**0.6,
         lambda n: n**-0.55,
         lambda n: 10 / (9 + n),
         lambda n: 100 / (99 + n),
-        lambda n: 1 / (1 + n),
         lambda n: min(1, 5 / n),
         lambda n: 0.2 if n < 1000 else 0.2 * 1000 / n,
     ],
@@ -152,6 +150,8 @@ def test_a_wrong_answer_is_told_what_is_wrong(exercise, answer, hint, seed):
         (lambda n: 0.5**n, "29% of the value is still what it began with"),
         (lambda n: 0.1 / n, "of the value is still what it began with"),
         (lambda n: 0.0, "100% of the value is still"),
+        (lambda n: 1 / n, "falls as fast as 1 / n"),
+        (lambda n: 1 / (n + 1), "falls as fast as 1 / n"),
         (lambda n: 2 / n, r"rate\(1\) is 2: a learning rate lies between 0 and 1"),
         (lambda n: 1 - n / 40_000, r"rate\(40001\) is -"),
         (lambda n: 1 / (n - 1), r"\(1\) stopped with ZeroDivisionError"),

@@ -134,7 +134,7 @@ WRONG = [
     (exercises.best, other_value(lambda b, alphas, actions: alphas.max()), "could happen"),
     (exercises.best, other_value(lambda b, alphas, actions: (alphas @ b).mean()), "may choose"),
     (exercises.best, other_value(lambda b, alphas, _: alphas.mean(axis=1).max()), "states alike"),
-    (exercises.best, lambda *given: best(*given)[::-1], "comes first"),
+    (exercises.best, lambda *given: best(*given)[::-1], "first the value"),
     (
         exercises.best,
         other_action(lambda b, alphas, actions: (alphas @ b).argmax()),

@@ -78,10 +78,10 @@ def first_hundred(x, m, rho, eta):
 
 
 WRONG = [
-    (exercises.scale, lambda d, o: (2 * o, (d - 2150) / 1950), "wrong order"),
+    (exercises.scale, lambda d, o: (2 * o, (d - 2150) / 1950), "first the distance"),
     (exercises.scale, lambda d, o: ((d - 2150) / 1950, -2 * o), "left stays positive"),
-    (exercises.scale, lambda d, o: ((d - 2150) / 1950, o), r"orientation 0.5 rad should become 1"),
-    (exercises.scale, lambda d, o: ((d - 200) / 3900, 2 * o), r"distance 200 mm should become -1"),
+    (exercises.scale, lambda d, o: ((d - 2150) / 1950, o), "from -0.5 to 0.5"),
+    (exercises.scale, lambda d, o: ((d - 200) / 3900, 2 * o), "from 0 to 1"),
     (exercises.scale, lambda d, o: (((d - 2150) / 1950) ** 3, 2 * o), "straight"),
     (exercises.scale, lambda d, o: (d - 2150) / 1950, "two numbers: .*not one"),
     (exercises.scale, lambda d, o: "near", "numbers, not 'near'"),
@@ -113,7 +113,7 @@ WRONG = [
         moving(lambda x, m, i, eta: set_row(m, i, m[i] - eta * (x - m[i]))),
         "sign",
     ),
-    (exercises.present, moving(lambda x, m, i, eta: set_row(m, i, x)), "1.00 of the way"),
+    (exercises.present, moving(lambda x, m, i, eta: set_row(m, i, x)), "jumped to the pattern"),
     (exercises.present, moving(lambda x, m, i, eta: set_row(m, i, eta * x)), "straight line"),
     (exercises.present, founding(lambda x, m: np.vstack([x, m])), "come last"),
     (exercises.present, founding(lambda x, m: np.vstack([m, 0 * x])), "where its pattern is"),
