@@ -35,6 +35,7 @@ from arkaq_edu.exercises.belief import (
     predict,
     what_is_wrong,
 )
+from arkaq_edu.exercises.beyond import one_of_twenty, paired, torn, worst
 from arkaq_edu.exercises.errata import coldest, even_depth, variance_of
 from arkaq_edu.exercises.exercise import Exercise
 from arkaq_edu.exercises.field import ball, pose, scoring_chance, what_a_test_says
@@ -64,6 +65,7 @@ CHAPTERS: dict[str, tuple[Exercise, ...]] = {
     "arkaq": (decide, cell, sarsa_target, is_clear),
     "approach": (reward, boltzmann, backup, which_recipe),
     "goal": (state_bounds, worth, kicks_needed, what_to_improve),
+    "beyond": (paired, worst, torn, one_of_twenty),
     "errata": (coldest, variance_of, even_depth),
 }
 

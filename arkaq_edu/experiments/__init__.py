@@ -7,8 +7,10 @@
 - `segmentation`: the recorded sightings of the ball, cut into categories, and their map;
 - `kicks`: kicks of a real robot, and simulated ones;
 - `policies`: policies that play either problem;
-- `studies`: `study`, every combination of some settings over many seeds, and `read_study`;
-  `trials`: one cell of it; `parts`: other segmenters and learners to compare;
+- `studies`: `study`, every combination of some settings over many seeds, `read_study`, and
+  `load_study` for those that come with the course; `trials`: one cell of it; `parts`: other
+  segmenters and learners to compare;
+- `hidden`: ARKAQ on small POMDPs; `cells`: the ball problem as a POMDP that can be planned;
 - `runs`: many runs at once, and their summary;
 - `counts`: the search for a recipe that gives the five counts of centers;
 - `claims`: every number and every claim of the thesis, and what judges it;
@@ -21,9 +23,11 @@ __getattr__, __dir__, __all__ = _lazy.attach(
     __name__,
     submodules=[
         "approach",
+        "cells",
         "claims",
         "counts",
         "goal",
+        "hidden",
         "kicks",
         "parts",
         "policies",
@@ -39,7 +43,7 @@ __getattr__, __dir__, __all__ = _lazy.attach(
         "claims": ["judge", "thesis_numbers"],
         "reproduce": ["measure", "results"],
         "runs": ["agent_file", "learning_curve"],
-        "studies": ["read_plan", "read_study", "study"],
+        "studies": ["bands", "load_study", "read_plan", "read_study", "study"],
         "streams": ["count_centers", "mean_nis"],
     },
 )

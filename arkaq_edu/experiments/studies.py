@@ -27,6 +27,7 @@ from tqdm.auto import tqdm
 
 from arkaq_edu import __version__, _checks
 from arkaq_edu._files import replacing
+from arkaq_edu._paths import data_file
 from arkaq_edu.experiments.trials import MEASURES, arrange, imported
 
 Task = str | Callable[..., Mapping[str, float]]
@@ -222,6 +223,60 @@ def read_study(folder: str | os.PathLike[str]) -> pd.DataFrame:
     keys = [cell.pop("key") for cell in plan["cells"]]
     values = [_finished(Path(folder), key) or {} for key in keys]
     return _table([*zip(plan["cells"], values, strict=True)])
+
+
+def load_study(name: str) -> pd.DataFrame:
+    """Return a study that comes with the course.
+
+    Parameters
+    ----------
+    name : str
+        The name of its plan in the folder ``data/studies``, without ".toml".
+
+    Returns
+    -------
+    DataFrame
+        See `study`.
+
+    Examples
+    --------
+    >>> load_study("planned").columns.tolist()
+    ['trusts', 'seed', 'quantity', 'value']
+    """
+    return pd.read_csv(data_file(f"studies/{name}.csv"), float_precision="round_trip")
+
+
+def bands(table: pd.DataFrame, *quantities: str, digits: int = 1) -> pd.DataFrame:
+    """Return the means of a study, each plus or minus two standard errors, as text.
+
+    Parameters
+    ----------
+    table : DataFrame
+        See `study`.
+    *quantities : str
+        The columns, by default all.
+    digits : int
+        Digits behind the point.
+
+    Returns
+    -------
+    DataFrame
+        A row for each combination of settings, in the order of the study.
+
+    Examples
+    --------
+    >>> rows = [[rho, seed, "success", 90.0 + seed] for rho in (0.1, 0.2) for seed in (0, 2)]
+    >>> bands(pd.DataFrame(rows, columns=["vigilance", "seed", "quantity", "value"]))
+    quantity     success
+    vigilance           
+    0.1        91.0 ± 2.0
+    0.2        91.0 ± 2.0
+    """
+    settings = [*table.columns[: [*table.columns].index("seed")]]
+    found = table.groupby([*settings, "quantity"], sort=False).value.agg(["mean", "sem"])
+    words = [f"{mean:,.{digits}f} ± {2 * sem:,.{digits}f}" for mean, sem in found.to_numpy()]
+    wide = pd.Series(words, found.index, dtype=object).unstack("quantity", sort=False)
+    return wide[[*quantities]] if quantities else wide
 
 
 def read_plan(path: str | os.PathLike[str]) -> dict[str, Any]:
