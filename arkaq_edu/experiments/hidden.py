@@ -35,7 +35,7 @@ REMEMBERS = ("last look", "two looks", "belief")
 LONGEST = 40
 #: How the agent learns: as long as it takes for the values of these problems to settle.
 LEARNING = TrainingSettings(
-    patterns=500, period=LONGEST, exploration=1500, exploitation=4500, hold=1, gamma=0.95,
+    patterns=300, period=LONGEST, exploration=1000, exploitation=2500, hold=1, gamma=0.95,
     alpha_least=0.01, hot=20.0, cold=0.5,
 )  # fmt: skip
 
@@ -175,6 +175,7 @@ def measure(seed: int, problem: str, remembers: str, episodes: int = 200) -> dic
     return {"states": float(agent.art.n_clusters_), "reward": reward, "regret": most - reward}
 
 
+@cache
 def best(name: str, seed: int, episodes: int = 200) -> float:
     """Return the mean reward of an episode by the best policy over beliefs (chapter 4).
 

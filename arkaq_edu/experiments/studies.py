@@ -243,7 +243,7 @@ def load_study(name: str) -> pd.DataFrame:
     >>> load_study("planned").columns.tolist()
     ['trusts', 'seed', 'quantity', 'value']
     """
-    return pd.read_csv(data_file(f"studies/{name}.csv"), float_precision="round_trip")
+    return pd.read_csv(data_file(f"studies/{name}.csv"))
 
 
 def bands(table: pd.DataFrame, *quantities: str, digits: int = 1) -> pd.DataFrame:
@@ -268,7 +268,7 @@ def bands(table: pd.DataFrame, *quantities: str, digits: int = 1) -> pd.DataFram
     >>> rows = [[rho, seed, "success", 90.0 + seed] for rho in (0.1, 0.2) for seed in (0, 2)]
     >>> bands(pd.DataFrame(rows, columns=["vigilance", "seed", "quantity", "value"]))
     quantity     success
-    vigilance           
+    vigilance
     0.1        91.0 ± 2.0
     0.2        91.0 ± 2.0
     """

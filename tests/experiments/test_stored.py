@@ -16,10 +16,6 @@ def plan_of(name):
     return read_plan(own if own.exists() else course_folder() / "benchmarks" / f"{name}.toml")
 
 
-def test_there_are_studies():
-    assert {path.stem for path in FOLDER.glob("*.toml")} <= {*STORED}
-
-
 @pytest.mark.parametrize("name", STORED)
 def test_a_stored_table_has_the_cells_of_its_plan_in_their_order(name):
     table, plan = load_study(name), plan_of(name)
