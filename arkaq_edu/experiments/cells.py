@@ -92,7 +92,8 @@ def cell(distance: Any, orientation: Any) -> Any:
 def _places(s: int, n: int, rng: np.random.Generator) -> tuple[Floats, Floats]:
     """Draw places in a cell."""
     i, j = divmod(s, _SHAPE[1])
-    return rng.uniform(*DISTANCES[i : i + 2], n), rng.uniform(*ORIENTATIONS[j : j + 2], n)
+    near, far, right, left = *DISTANCES[i : i + 2], *ORIENTATIONS[j : j + 2]
+    return rng.uniform(near, far, n), rng.uniform(right, left, n)
 
 
 def _walk(distance: Floats, orientation: Floats, a: int) -> tuple[Floats, Floats]:
