@@ -38,7 +38,6 @@ class _Canvas:
         self.scale = width * _OVERSAMPLING / (right - left)
         self.middle = (left + right) / 2, (bottom + top) / 2
         height = round(width * (top - bottom) / (right - left))
-        self.size = (width, height)
         self.image = Image.new("RGB", (width * _OVERSAMPLING, height * _OVERSAMPLING), _CARPET)
         self.draw = ImageDraw.Draw(self.image, "RGBA")
 
@@ -67,7 +66,7 @@ class _Canvas:
         )
 
     def finish(self) -> np.ndarray:
-        return np.asarray(self.image.resize(self.size, Image.Resampling.LANCZOS))
+        return np.asarray(self.image.reduce(_OVERSAMPLING))
 
 
 def body_outline(x: float, y: float, heading: float) -> np.ndarray:

@@ -2,13 +2,8 @@
 
 import json
 import os
-import random
 import resource
-import signal
-import subprocess
-import sys
 import tempfile
-import time
 from pathlib import Path
 
 import gymnasium
@@ -254,38 +249,6 @@ def test_an_interrupted_run_gives_its_checkpoint_free(begun):
     path = begun(60)
     assert os.listdir(path.parent) == [path.name]
     brief_agent(checkpoint=path)
-
-
-PROGRAM = """
-import sys
-from arkaq_edu.arkaq import storage
-storage.SECONDS_BETWEEN_CHECKPOINTS = 0.02
-from tests.arkaq.brief import brief_agent
-print("ready", flush=True)
-brief_agent(checkpoint=sys.argv[1])
-"""
-
-
-def test_a_run_killed_at_random_moments_ends_in_the_same_bytes(tmp_path):
-    whole, killed = tmp_path / "whole.npz", tmp_path / "killed" / "agent.npz"
-    brief_agent(checkpoint=whole)
-    moments, kills = random.Random(0), 0
-    for _ in range(4):
-        process = subprocess.Popen(
-            [sys.executable, "-c", PROGRAM, str(killed)], stdout=subprocess.PIPE
-        )
-        process.stdout.readline()
-        time.sleep(moments.uniform(0.05, 0.5))
-        if process.poll() is None:
-            process.send_signal(signal.SIGKILL)
-            kills += 1
-        process.wait()
-        process.stdout.close()
-        if killed.exists():
-            assert Arkaq.load(killed).seed == 4
-    assert kills > 0
-    brief_agent(checkpoint=killed)  # the lock of the dead does not bind
-    assert killed.read_bytes() == whole.read_bytes()
 
 
 # A disk that is full, a folder that cannot be written to -----------------------------------------

@@ -17,6 +17,8 @@ import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_notebook
 
+from tests.browser.reading import errors
+
 NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "chrome"))), None)
 QUIET = (
@@ -47,19 +49,44 @@ def course(tmp_path_factory):
     return folder
 
 
+@pytest.fixture(scope="session")
+def desk(course, lab, chromium):
+    """A notebook in a window of its own, on which the tests of a worker lay their cells."""
+    nbformat.write(notebook_of([]), course / "desk.ipynb")
+    with opening(lab, chromium) as open_:
+        yield open_("desk.ipynb", run=False)
+
+
+@pytest.fixture
+def run_cell(desk):
+    """A function that runs a new cell of code, by itself, and returns its place in the page."""
+
+    def run(code):
+        desk.evaluate(RUN_NEW, code)
+        assert errors(desk) == []
+        return desk.locator(".jp-Notebook .jp-CodeCell").nth(desk.evaluate(N_CELLS) - 1)
+
+    yield run
+    desk.evaluate(CLEAR)
+
+
 @pytest.fixture
 def open_cells(course, open_notebook):
     """A function that opens a notebook with these cells of code, runs it, returns the page."""
 
-    def open_(*cells):
-        made = new_notebook(
-            cells=[new_code_cell(code) for code in cells],
-            metadata={"kernelspec": {"display_name": "Python 3", "name": "python3"}},
-        )
-        nbformat.write(made, course / "cells.ipynb")
-        return open_notebook("cells.ipynb")
+    def open_(*cells, **options):
+        nbformat.write(notebook_of(cells), course / "cells.ipynb")
+        return open_notebook("cells.ipynb", **options)
 
     return open_
+
+
+def notebook_of(cells):
+    """A notebook with these cells of code."""
+    return new_notebook(
+        cells=[new_code_cell(code) for code in cells],
+        metadata={"kernelspec": {"display_name": "Python 3", "name": "python3"}},
+    )
 
 
 @pytest.fixture(scope="session")
@@ -169,6 +196,17 @@ def opening(address, chromium):
 
 
 RUN_ALL = "jupyterapp.commands.execute('notebook:run-all-cells')"
+N_CELLS = "jupyterapp.shell.currentWidget.content.widgets.length"
+RUN_NEW = """async (code) => {
+    const { content } = jupyterapp.shell.currentWidget;
+    content.model.sharedModel.addCell({ cell_type: "code", source: code });
+    content.activeCellIndex = content.widgets.length - 1;
+    await jupyterapp.commands.execute("notebook:run-cell");
+}"""
+CLEAR = """() => {
+    const { content } = jupyterapp.shell.currentWidget;
+    content.model.sharedModel.deleteCellRange(0, content.widgets.length);
+}"""
 READY = """async () => {
     const soon = () => new Promise((done) => setTimeout(done, 50));
     while (!window.jupyterapp) await soon();

@@ -2,6 +2,7 @@
 
 from playwright.sync_api import expect
 
+from tests.browser.conftest import N_CELLS
 from tests.browser.reading import assert_sound
 
 CELLS = [
@@ -9,7 +10,6 @@ CELLS = [
     "kalman_explorer()",
     "belief_explorer()",
 ]
-N_CELLS = "jupyterapp.shell.currentWidget.content.widgets.length"
 
 
 def test_controls_have_names_and_values_and_keep_keys_and_focus(open_cells):

@@ -1,24 +1,21 @@
-"""Notebook 03 in a real browser: it runs, and the belief follows the buttons."""
+"""Explorer 3 in a real browser: the belief follows the buttons."""
 
 import re
 
 from playwright.sync_api import expect
 
-from tests.browser.reading import assert_sound, errors, picture
-
-NOTEBOOK = "03_belief_states.ipynb"
+from tests.browser.reading import assert_sound, picture
 
 
-def test_runs_and_steps_a_belief(open_notebook):
-    page = open_notebook(NOTEBOOK)
-    assert errors(page) == []
-    canvas = page.get_by_role("img", name=re.compile("bits of doubt|[?]$"))
+def test_steps_a_belief(run_cell):
+    cell = run_cell("from arkaq_edu.widgets import belief_explorer; belief_explorer()")
+    canvas = cell.get_by_role("img", name=re.compile("bits of doubt|[?]$"))
     expect(canvas).to_have_attribute("aria-label", re.compile("^corridor, at first: "))
 
     def press(name):
-        page.get_by_role("button", name=name, exact=True).filter(visible=True).click()
+        cell.get_by_role("button", name=name, exact=True).filter(visible=True).click()
 
-    goal = page.get_by_role("button", name="goal", exact=True).filter(visible=True)
+    goal = cell.get_by_role("button", name="goal", exact=True).filter(visible=True)
     expect(goal).to_be_disabled()
     drawn = picture(canvas)
     for name, fact in [
@@ -34,11 +31,11 @@ def test_runs_and_steps_a_belief(open_notebook):
     press("let the world answer")
     expect(canvas).to_have_attribute("aria-label", re.compile("^corridor, step 2, left then noth"))
 
-    page.get_by_label("problem").select_option("three_places")
+    cell.get_by_label("problem").select_option("three_places")
     expect(canvas).to_have_attribute("aria-label", re.compile("^three_places, at first: "))
     press("look")
     press("seen-left")
     expect(canvas).to_have_attribute("aria-label", re.compile("^three_places, step 1.* left .70;"))
     press("start again")
     expect(canvas).to_have_attribute("aria-label", re.compile("^three_places, at first: "))
-    assert_sound(page)
+    assert_sound(cell)

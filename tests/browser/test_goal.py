@@ -1,19 +1,17 @@
-"""Notebook 11 in a real browser: it runs, and what scores follows the keyboard."""
+"""Explorer 11 in a real browser: what scores follows the keyboard."""
 
 import re
 
 from playwright.sync_api import expect
 
-from tests.browser.reading import assert_sound, errors, picture, slider_of
+from tests.browser.reading import assert_sound, picture, slider_of
 
-NOTEBOOK = "11_scoring_goals.ipynb"
 FACT = re.compile(r"^([\d,]+) mm, spread ([\d.]+), .* vigilance ([\d.]+): (\d+) % score")
 
 
-def test_runs_and_follows_the_keyboard(open_notebook):
-    page = open_notebook(NOTEBOOK)
-    assert errors(page) == []
-    canvas = page.get_by_role("img", name=FACT)
+def test_follows_the_keyboard(run_cell):
+    cell = run_cell("from arkaq_edu.widgets import scoring_explorer; scoring_explorer()")
+    canvas = cell.get_by_role("img", name=FACT)
     expect(canvas).to_be_visible()
 
     def stated():
@@ -26,15 +24,15 @@ def test_runs_and_follows_the_keyboard(open_notebook):
         ("distance", "ArrowLeft", "^1,800 mm, spread 0.9, "),
         ("vigilance", "ArrowRight", "vigilance 0.075: "),
     ]:
-        slider, _ = slider_of(page, name)
+        slider, _ = slider_of(cell, name)
         slider.press(key)
         expect(canvas).to_have_attribute("aria-label", re.compile(fact))
         assert picture(canvas) != drawn
         drawn = picture(canvas)
     assert int(stated()[3]) > scored, "nearer, and with a steadier kick"
 
-    slider, readout = slider_of(page, "vigilance")
+    slider, readout = slider_of(cell, "vigilance")
     slider.press("End")
     expect(canvas).to_have_attribute("aria-label", re.compile(r"1 state at vigilance 1\.2: "))
     assert readout.inner_text() == "1.2"
-    assert_sound(page)
+    assert_sound(cell)

@@ -1,23 +1,20 @@
-"""Notebook 02 in a real browser: it runs, and a key is a sweep."""
+"""Explorers 2 in a real browser: a key is a sweep, a second key a learning run."""
 
 import re
 
 from playwright.sync_api import expect
 
-from tests.browser.reading import assert_sound, errors, picture, slider_of
+from tests.browser.reading import assert_sound, picture, slider_of
 
-NOTEBOOK = "02_markov_decision_processes.ipynb"
 SWEPT = re.compile(r"^sweep (\d+): (\d+) arrows? turned, (\d+) of 37 are right")
 LEARNED = re.compile(r"^([\d,]+) steps: (\d+) of 37 arrows are right")
 
 
-def test_runs_and_a_key_is_a_sweep(open_notebook):
-    page = open_notebook(NOTEBOOK)
-    assert errors(page) == []
-
-    canvas = page.get_by_role("img", name=SWEPT)
+def test_a_key_is_a_sweep(run_cell):
+    cell = run_cell("from arkaq_edu.widgets import planning_explorer; planning_explorer()")
+    canvas = cell.get_by_role("img", name=SWEPT)
     expect(canvas).to_be_visible()
-    slider, readout = slider_of(page, "sweeps")
+    slider, readout = slider_of(cell, "sweeps")
     slider.focus()
     right, drawn = [4], picture(canvas)
     for sweep in (1, 2, 3):
@@ -30,15 +27,19 @@ def test_runs_and_a_key_is_a_sweep(open_notebook):
     assert right == sorted(right) and right[-1] > right[0]
     slider.press("End")
     expect(canvas).to_have_attribute("aria-label", re.compile("^sweep 40: 0 arrows turned, 37 of"))
-    slip, _ = slider_of(page, "slip")
+    slip, _ = slider_of(cell, "slip")
     slip.press("End")
     expect(canvas).to_have_attribute("aria-label", re.compile("^sweep 40: .* off by [1-9]"))
+    assert_sound(cell)
 
-    life = page.get_by_role("img", name=LEARNED)
-    steps, _ = slider_of(page, "steps")
+
+def test_learning_follows_the_keys(run_cell):
+    cell = run_cell("from arkaq_edu.widgets import q_learning_explorer; q_learning_explorer()")
+    life = cell.get_by_role("img", name=LEARNED)
+    steps, _ = slider_of(cell, "steps")
     steps.press("Home")
     expect(life).to_have_attribute("aria-label", re.compile("^0 steps: 0 of 37"))
-    heat, readout = slider_of(page, "temperature")
+    heat, readout = slider_of(cell, "temperature")
     before = picture(life)
     steps.press("End")
     expect(life).to_have_attribute("aria-label", re.compile("^20,000 steps: "))
@@ -47,4 +48,4 @@ def test_runs_and_a_key_is_a_sweep(open_notebook):
     heat.press("End")
     expect(life).not_to_have_attribute("aria-label", fact)
     assert readout.inner_text() == "1000"
-    assert_sound(page)
+    assert_sound(cell)

@@ -7,6 +7,7 @@ from playwright.sync_api import expect
 from tests.browser.reading import BROKEN, OUTPUTS, assert_sound, errors, picture, slider_of
 
 NOTEBOOK = "07_state_segmentation.ipynb"
+CELL = "from arkaq_edu.widgets import vigilance_explorer; vigilance_explorer()"
 FACT = re.compile(r"^([\d,]+) categories at vigilance ([\d.]+?)[,;]")
 
 
@@ -51,8 +52,8 @@ def test_runs_and_follows_the_keyboard(open_notebook):
     assert_sound(page)
 
 
-def test_fits_the_window_and_the_screen(open_notebook):
-    page = open_notebook(NOTEBOOK, viewport={"width": 1280, "height": 900}, device_scale_factor=2)
+def test_fits_the_window_and_the_screen(open_cells):
+    page = open_cells(CELL, viewport={"width": 1280, "height": 900}, device_scale_factor=2)
     canvas, (slider, _) = page.get_by_role("img", name=FACT), slider_of(page, "vigilance")
     expect(canvas).to_be_visible()
     wide, output = canvas.bounding_box(), page.locator(".jp-OutputArea", has=canvas).bounding_box()

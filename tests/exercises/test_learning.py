@@ -193,5 +193,5 @@ def test_a_wrong_answer_is_told_what_is_wrong(exercise, answer, hint, seed):
 
 
 def test_a_right_choice_is_hardly_ever_called_wrong():
-    for seed in range(20):
+    for seed in range(5):
         exercises.epsilon_greedy.check(epsilon_greedy, rng=seed)

@@ -32,7 +32,7 @@ def assert_close(ours, theirs, tolerance=1e-10, beside=0):
 
 
 @pytest.mark.thesis("eqs 2.53 to 2.59")
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(systems())
 def test_agrees_with_filterpy(drawn):
     system, rng = drawn
