@@ -26,7 +26,7 @@ export UV_HTTP_RETRIES := 10
 export UV_HTTP_TIMEOUT := 120
 
 .PHONY: help install lab author slides grading student teaching test test-lowest test-newest \
-	soak fuzz check reproduce bench guard latency visits notebooks lock wheels \
+	soak fuzz check reproduce bench guard latency visits notebooks site site-check lock wheels \
 	coverage mutation
 
 help:
@@ -39,6 +39,8 @@ help:
 	@echo 'make guard      check in a few seconds that nothing has become twice as slow'
 	@echo 'make latency    measure in Chromium how fast every picture follows its slider'
 	@echo 'make visits     visit the page of `arkaq explore` fifty times in Chromium'
+	@echo 'make site       write the whole course as web pages, into build/site'
+	@echo 'make site-check visit every page of build/site in Chromium'
 	@echo 'make notebooks  run the notebooks and store what they show'
 	@echo 'make install    only make $(VENV), as each of the above does first'
 	@echo 'make lock       resolve requirements.lock anew from pyproject.toml'
@@ -121,6 +123,23 @@ visits: $(BIN)/voila
 
 $(BIN)/voila: $(READY)
 	$(BIN)/python -m pip install --quiet voila
+
+# Sphinx stays out of the students' environment.
+site: build/site-env/ready
+	build/site-env/bin/arkaq site build/site
+
+build/site-env/ready: $(BIN)/uv requirements.lock pyproject.toml
+	$(BIN)/uv --no-config venv --quiet --clear --python $(BIN)/python build/site-env
+	$(BIN)/uv --no-config pip install --quiet --python build/site-env \
+		--requirement requirements.lock --no-deps
+	$(BIN)/uv --no-config pip install --quiet --python build/site-env \
+		--requirement pyproject.toml --extra site
+	$(BIN)/uv --no-config pip install --quiet --python build/site-env --no-deps \
+		--no-build-isolation --editable .
+	@touch build/site-env/ready
+
+site-check: $(READY)
+	$(BIN)/python -m pytest tests/browser/site.py -q
 
 notebooks: $(READY)
 	$(BIN)/python notebooks/store.py

@@ -379,6 +379,26 @@ def slides(out: Path) -> None:
         click.echo(page)
 
 
+@main.command()
+@click.argument("out", type=click.Path(file_okay=False, path_type=Path))
+def site(out: Path) -> None:
+    """Write the whole course as web pages.
+
+    They open from a disk and from any web server, without Python; the pictures with sliders are
+    alive there. OUT must be new, empty, or an earlier site. It needs Sphinx:
+    pip install "arkaq-edu[site]".
+    """
+    try:
+        import sphinx  # noqa: F401
+    except ImportError:
+        words = 'the site needs Sphinx, which is not installed: pip install "arkaq-edu[site]"'
+        raise click.ClickException(words) from None
+    from arkaq_edu.site.build import site
+
+    for line in site(out):
+        click.echo(line)
+
+
 def _start_jupyterlab(folder: Path, no_browser: bool) -> None:
     from jupyterlab.labapp import main as jupyterlab
 

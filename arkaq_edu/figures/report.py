@@ -285,22 +285,30 @@ def _card(
     options: Mapping[str, Any],
 ) -> str:
     png, inches, fact = drawn
-    caption = _caption(number, draw)
+    told = caption(number, draw)
     image = base64.b64encode(png).decode()
     size = f"width:{inches * WIDTH:.0f}px;min-width:{inches * LEAST_WIDTH:.0f}px"
     seen = f"<span>{escape(fact[:1].upper() + fact[1:])}.</span>" if fact else ""
     whose = _whose(number, _taken(draw, options), int(results.seeds.max()))
     return (
         f'<figure id="figure-{number}">\n'
-        f'<div class="picture"><img loading="lazy" alt="Figure {number}: {caption} {escape(fact)}" '
+        f'<div class="picture"><img loading="lazy" alt="Figure {number}: {told} {escape(fact)}" '
         f'style="{size}" src="data:image/png;base64,{image}"></div>\n'
-        f'<figcaption><a class="self" href="#figure-{number}">Figure {number}</a> {caption} {seen} '
+        f'<figcaption><a class="self" href="#figure-{number}">Figure {number}</a> {told} {seen} '
         f'<span class="place">{whose}</span>{_differences(number, results)}</figcaption>\n</figure>'
     )
 
 
-def _caption(number: str, draw: Draw) -> str:
-    """Make a caption of a docstring such as "Draw figure 5.6, the automaton; see `plot`."."""
+def caption(number: str, draw: Draw) -> str:
+    """Return the caption of a figure as HTML, from the first line of its function's docstring.
+
+    Examples
+    --------
+    >>> from arkaq_edu.figures.gallery import FIGURES
+    >>> caption("5.6", FIGURES["5.6"])
+    'The automaton of segmentation.'
+    """
+    # Such a line is: Draw figure 5.6, the automaton; see `plot`.
     line = (draw.__doc__ or "").strip().splitlines()[0]
     said = line.removeprefix(f"Draw figure {number}").lstrip(",: ").split("; see ")[0].rstrip(".")
     return escape(f"{said[:1].upper()}{said[1:]}.")

@@ -333,6 +333,8 @@ class Explorer(ipywidgets.VBox):
         The canvas.
     controls : dict
         The controls by name.
+    draw : callable
+        From the values of the controls to a scene, as it was given.
     drawn : Scene
         The scene on the canvas.
     error : Exception or None
@@ -358,7 +360,7 @@ class Explorer(ipywidgets.VBox):
         self.view = CanvasView() if view is None else view
         self.controls = controls
         self.error: Exception | None = None
-        self._draw = draw
+        self.draw = draw
         self._message = ipywidgets.HTML(tooltip="")
         super().__init__([*controls.values(), self.view, self._message])
         self.add_class("arkaq-explorer")
@@ -374,7 +376,7 @@ class Explorer(ipywidgets.VBox):
         close_whole(self)
 
     def _redraw(self) -> None:
-        self.drawn = self._draw(**{name: box.value for name, box in self.controls.items()})
+        self.drawn = self.draw(**{name: box.value for name, box in self.controls.items()})
         self.view.show(self.drawn)
 
     def _moved(self, _: Any) -> None:

@@ -1,0 +1,268 @@
+// Brings the explorers of a page to life without a kernel. What an explorer shows at each of its
+// stops is in a file of its own (arkaq_edu/site/living.py packs it); canvas.js draws it.
+
+{
+  const HERE = new URL(".", document.currentScript.src);
+  const waiting = {}; // what asks for the data of an explorer, by its name
+
+  // Each file of data calls this.
+  window.arkaqLiving = (name, text) => waiting[name]?.(text);
+
+  function load(name) {
+    return new Promise((done, fail) => {
+      waiting[name] = done;
+      const script = document.createElement("script");
+      script.src = new URL(`living/${name}.js`, HERE);
+      script.onerror = fail;
+      document.head.append(script);
+    }).then(unpack);
+  }
+
+  async function unpack(text) {
+    const packed = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+    const plain = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+    const bytes = new Uint8Array(await new Response(plain).arrayBuffer());
+    const end = 4 + new DataView(bytes.buffer).getUint32(0, true);
+    const told = JSON.parse(new TextDecoder().decode(bytes.subarray(4, end)));
+    const n = (bytes.length - end) / 4;
+    const joined = new Uint8Array(4 * n); // from four planes of bytes
+    for (let plane = 0; plane < 4; plane++) {
+      for (let i = 0, from = end + plane * n; i < n; i++) joined[4 * i + plane] = bytes[from + i];
+    }
+    return { ...told, numbers: new Float32Array(joined.buffer) };
+  }
+
+  // A scene as canvas.js takes it: the layout, and the numbers of its own layers alone.
+  function sceneOf(data, id) {
+    const [fact, ids] = data.scenes[id];
+    const parts = [];
+    let start = 0;
+    const panels = ids.map((panel) => {
+      const layers = data.panels[panel].layers.map((number) => {
+        const layer = data.layers[number];
+        parts.push(data.numbers.subarray(layer.start, layer.start + layer.length));
+        start += layer.length;
+        return { ...layer, start: start - layer.length };
+      });
+      return { ...data.panels[panel], layers };
+    });
+    const numbers = new Float32Array(start);
+    let at = 0;
+    for (const part of parts) {
+      numbers.set(part, at);
+      at += part.length;
+    }
+    return [{ fact, panels }, new Uint8Array(numbers.buffer)];
+  }
+
+  // Which settings there are. Where the one asked for is not there, the nearest one is: it keeps
+  // what was just moved, and changes as few of the others as it can.
+  function settingsOf(data) {
+    const scenes = new Map(data.settings.map((row) => [row.slice(0, -1).join(), row.at(-1)]));
+    const known = data.settings.map((row) => row.slice(0, -1));
+    const distance = (a, b) =>
+      a.reduce((sum, stop, i) => sum + (stop === b[i] ? 0 : 1000 + Math.abs(stop - b[i])), 0);
+    return {
+      scene: (setting) => scenes.get(setting.join()),
+      nearest(setting, moved) {
+        if (scenes.has(setting.join())) return setting;
+        let best = null;
+        for (const each of known) {
+          if (each[moved] !== setting[moved]) continue;
+          if (!best || distance(each, setting) < distance(best, setting)) best = each;
+        }
+        return best;
+      },
+      stops: (handle) => [...new Set(known.map((row) => row[handle]))].sort((a, b) => a - b),
+    };
+  }
+
+  function make(tag, options = {}, ...children) {
+    const made = Object.assign(document.createElement(tag), options);
+    made.append(...children);
+    return made;
+  }
+
+  let count = 0;
+
+  // Each kind of handle: its element, and how it shows a stop. `go(stop)` moves it.
+  const HANDLES = {
+    slider(handle, stops, go) {
+      const id = `arkaq-${count++}`;
+      const input = make("input", { type: "range", id, min: 0, max: stops.length - 1, title: handle.tip ?? "" });
+      const readout = make("output", { htmlFor: id });
+      input.addEventListener("input", () => go(stops[input.value]));
+      const row = make("div", { className: "arkaq-row" }, make("label", { htmlFor: id }, handle.label), input, readout);
+      const show = (stop) => {
+        input.value = stops.indexOf(stop);
+        readout.textContent = handle.texts[stop];
+        input.setAttribute("aria-valuetext", handle.texts[stop]);
+      };
+      return [row, show];
+    },
+
+    menu(handle, stops, go) {
+      const options = stops.map((stop) => make("option", { value: stop }, handle.texts[stop]));
+      const select = make("select", { title: handle.tip ?? "" }, ...options);
+      select.addEventListener("change", () => go(Number(select.value)));
+      const row = make("label", { className: "arkaq-row" }, make("span", {}, handle.label), select);
+      return [row, (stop) => (select.value = stop)];
+    },
+
+    box(handle, stops, go) {
+      const input = make("input", { type: "checkbox", title: handle.tip ?? "" });
+      input.addEventListener("change", () => go(Number(input.checked)));
+      return [make("label", { className: "arkaq-box" }, input, handle.label), (stop) => (input.checked = !!stop)];
+    },
+
+    presses(handle, stops, go, offered) {
+      const place = make("div", { className: "arkaq-presses" });
+      let now = handle.start;
+      let shown = null;
+      const press = (name) => {
+        const next = name === handle.again ? handle.roots[handle.root[now]] : handle.after[now][name];
+        if (next !== undefined && offered(next)) go(next);
+      };
+      const button = (name) => {
+        const made = make("button", { type: "button" }, name);
+        made.addEventListener("click", () => press(name));
+        return made;
+      };
+      const build = (root) => {
+        const first = make("div", { className: "arkaq-buttons" });
+        if (handle.menu) {
+          const select = make("select", { ariaLabel: "problem" }, ...handle.menu.map((name) => make("option", {}, name)));
+          select.value = root;
+          select.addEventListener("change", () => go(handle.roots[select.value]));
+          first.append(select);
+        }
+        const rows = handle.rows[root].map(([label, names]) =>
+          make("div", { className: "arkaq-buttons" }, ...(label ? [make("span", {}, label)] : []), ...names.map(button)),
+        );
+        (handle.menu ? first : rows[0]).append(button(handle.again));
+        place.replaceChildren(...(handle.menu ? [first] : []), ...rows);
+        shown = root;
+      };
+      const show = (stop) => {
+        now = stop;
+        if (shown !== handle.root[stop]) build(handle.root[stop]);
+        for (const each of place.querySelectorAll("button")) {
+          const name = each.textContent;
+          const next = name === handle.again ? handle.roots[shown] : handle.after[stop][name];
+          each.classList.toggle("arkaq-off", next === undefined || !offered(next));
+        }
+      };
+      return [place, show];
+    },
+  };
+
+  function bringToLife(place, data) {
+    const settings = settingsOf(data);
+    let setting = data.handles.map((handle) => handle.start);
+    const shows = [];
+    const rows = {};
+    const model = modelOf(data);
+
+    function show() {
+      [model.values.scene, model.values.numbers] = sceneOf(data, settings.scene(setting));
+      data.handles.forEach((handle, i) => shows[i](setting[i]));
+      for (const [menu, hidden] of Object.entries(data.hidden)) {
+        const stop = setting[data.handles.findIndex((handle) => handle.name === menu)];
+        for (const [name, row] of Object.entries(rows)) row.hidden = hidden[stop].includes(name);
+      }
+      model.changed();
+    }
+
+    function go(handle, stop) {
+      const asked = [...setting];
+      asked[handle] = stop;
+      const next = settings.nearest(asked, handle);
+      if (next) setting = next;
+      show();
+    }
+
+    const controls = make("div", { className: "arkaq-controls" });
+    data.handles.forEach((handle, i) => {
+      const offered = (stop) => settings.scene(setting.with(i, stop)) !== undefined;
+      const [row, tell] = HANDLES[handle.kind](handle, settings.stops(i), (stop) => go(i, stop), offered);
+      rows[handle.name] = row;
+      shows.push(tell);
+      controls.append(row);
+    });
+    for (const drag of data.drag) follow(model, drag, data, settings, () => setting, go);
+
+    const canvas = make("div");
+    const note = make("p", { className: "arkaq-note" }, data.note);
+    place.classList.add("arkaq-explorer");
+    show();
+    place.replaceChildren(controls, canvas, ...(data.note ? [note] : []));
+    window.arkaqCanvas.render({ model, el: canvas });
+  }
+
+  // What canvas.js needs of a widget's model.
+  function modelOf(data) {
+    const listeners = [];
+    const model = {
+      values: { draggable: data.drag.length ? [0] : [], drag: {}, arrows: [0, 0] },
+      told: () => {},
+      get: (name) => model.values[name],
+      set: (name, value) => (model.values[name] = value),
+      on: (_, listener) => listeners.push(listener),
+      off: () => (listeners.length = 0),
+      changed: () => listeners.forEach((listener) => listener()),
+      save_changes: () => model.told(),
+    };
+    return model;
+  }
+
+  // Drags and arrow keys on the canvas move one or two handles, as in a notebook (explorer.Drag).
+  function follow(model, drag, data, settings, now, go) {
+    const numbers = drag.handles.map((name) => data.handles.findIndex((handle) => handle.name === name));
+    const stops = numbers.map((handle) => settings.stops(handle));
+    const value = (k) => drag.values[k][now()[numbers[k]]];
+    const nearest = (k, target) =>
+      stops[k].reduce((a, b) => (Math.abs(drag.values[k][b] - target) < Math.abs(drag.values[k][a] - target) ? b : a));
+    let start = [];
+    let number = null;
+    let arrows = [0, 0];
+    model.told = () => {
+      const moved = model.values.drag;
+      if (moved.number !== number) {
+        number = moved.number;
+        start = numbers.map((_, k) => value(k));
+      }
+      const keys = model.values.arrows.map((n, k) => n - arrows[k]);
+      arrows = model.values.arrows;
+      if (numbers.length === 1) keys[0] += keys[1]; // a single slider takes all four keys
+      numbers.forEach((handle, k) => {
+        const gain = drag.gain?.[k];
+        let stop = null;
+        if (keys[k]) {
+          const at = stops[k].indexOf(now()[handle]) + keys[k] * Math.sign(gain ?? 1);
+          stop = stops[k][Math.min(Math.max(at, 0), stops[k].length - 1)];
+        } else if (moved.to) {
+          stop = nearest(k, gain == null ? moved.to[k] : start[k] + gain * (moved.to[k] - moved.from[k]));
+        }
+        if (stop !== null && stop !== now()[handle]) go(handle, stop);
+      });
+      if (keys.some(Boolean)) model.values.drag = { number };
+    };
+  }
+
+  function begin() {
+    const near = new IntersectionObserver(
+      (entries) => {
+        for (const { isIntersecting, target } of entries) {
+          if (!isIntersecting) continue;
+          near.unobserve(target);
+          load(target.dataset.explorer).then((data) => bringToLife(target, data));
+        }
+      },
+      { rootMargin: "800px" },
+    );
+    for (const place of document.querySelectorAll(".arkaq-living[data-explorer]")) near.observe(place);
+  }
+
+  if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", begin);
+  else begin();
+}
