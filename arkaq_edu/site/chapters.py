@@ -14,8 +14,8 @@ from arkaq_edu._paths import course_folder
 from arkaq_edu._student import blank
 from arkaq_edu.site.living import name_of
 
-#: The folder of the pictures, as the pages of the site see it.
-PICTURES = "_static/pictures"
+#: The folders of pictures and explorers, as the pages of the site see them.
+PICTURES, EXPLORERS = "_static/pictures", "_static/living"
 
 
 class Chapter(NamedTuple):
@@ -119,4 +119,8 @@ def picture(name: str, words: str, png: bytes, alive: str = "") -> str:
     )
     if not alive:
         return image
-    return f'<div class="arkaq-living" data-explorer="{name_of(alive)}">{image}</div>'
+    name = name_of(alive)
+    return (
+        f'<div class="arkaq-living" data-explorer="{name}" data-src="../{EXPLORERS}/{name}.js">'
+        f"{image}</div>"
+    )

@@ -14,6 +14,7 @@ PAGE, SITE = 8_000_000, 60_000_000
 _LOADS = {
     ("img", "src"), ("script", "src"), ("source", "src"), ("video", "src"), ("iframe", "src"),
     ("audio", "src"), ("embed", "src"), ("object", "data"), ("video", "poster"), ("link", "href"),
+    ("div", "data-src"),
 }  # fmt: skip
 _PASSIVE = {"canonical", "next", "prev", "search", "index", "author", "license", "help"}
 _IN_STYLES = re.compile(r"url\(\s*['\"]?([^'\")]+)|@import\s+['\"]([^'\"]+)")

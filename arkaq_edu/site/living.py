@@ -246,13 +246,13 @@ def _name(press: Any) -> str:
 
 
 def settings(made: Mapping[str, Handle], products: Sequence[Kept]) -> list[tuple[int, ...]]:
-    """Return the settings that are kept, each as its numbers of stops.
+    """Return the settings that are kept, each as its numbers of stops; a start is always kept.
 
     Examples
     --------
     >>> made = {name: Handle({}, [0, 5, 9], 1) for name in "ab"}
     >>> settings(made, [{"a": START, "b": (0, 9)}])
-    [(1, 0), (1, 2)]
+    [(1, 0), (1, 1), (1, 2)]
     """
     found = [
         setting
@@ -389,9 +389,8 @@ def unpack(data: bytes) -> tuple[dict[str, Any], NDArray[np.float32]]:
     return json.loads(plain[4:end]), np.ascontiguousarray(planes.T).view(np.float32).ravel()
 
 
-def packed(call: str) -> bytes:
-    """Return the explorer that a cell makes, with what it shows at all stops that are kept."""
-    living = LIVING[call]
+def packed(living: Living) -> bytes:
+    """Return an explorer as a page takes it, with what it shows at all stops that are kept."""
     explorer = living.make()
     made = handles(explorer, living)
     kept = settings(made, living.products)
@@ -455,7 +454,7 @@ def write_explorers(folder: Path) -> None:
     """Write a file for each explorer of the chapters, and the canvas that draws them."""
     made = folder / "living"
     made.mkdir(parents=True)
-    tasks = [delayed(packed)(call) for call in LIVING]
+    tasks = [delayed(packed)(living) for living in LIVING.values()]
     for call, data in zip(LIVING, run_all(tasks, -1, True, "explorers"), strict=True):
         name = name_of(call)
         text = f'arkaqLiving("{name}", "{base64.b64encode(data).decode()}");\n'

@@ -2,17 +2,16 @@
 // stops is in a file of its own (arkaq_edu/site/living.py packs it); canvas.js draws it.
 
 {
-  const HERE = new URL(".", document.currentScript.src);
   const waiting = {}; // what asks for the data of an explorer, by its name
 
   // Each file of data calls this.
   window.arkaqLiving = (name, text) => waiting[name]?.(text);
 
-  function load(name) {
+  function load({ explorer: name, src }) {
     return new Promise((done, fail) => {
       waiting[name] = done;
       const script = document.createElement("script");
-      script.src = new URL(`living/${name}.js`, HERE);
+      script.src = src;
       script.onerror = fail;
       document.head.append(script);
     }).then(unpack);
@@ -255,7 +254,7 @@
         for (const { isIntersecting, target } of entries) {
           if (!isIntersecting) continue;
           near.unobserve(target);
-          load(target.dataset.explorer).then((data) => bringToLife(target, data));
+          load(target.dataset).then((data) => bringToLife(target, data));
         }
       },
       { rootMargin: "800px" },
