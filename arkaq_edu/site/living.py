@@ -31,6 +31,7 @@ from arkaq_edu.experiments.runs import run_all
 from arkaq_edu.widgets import Buttons, Drag, Explorer
 from arkaq_edu.widgets.belief import Turns
 from arkaq_edu.widgets.explorer import START_AGAIN, is_offered
+from arkaq_edu.widgets.field import Presses
 from arkaq_edu.widgets.scene import Scene
 
 START = "start"  #: A control that stays where it starts.
@@ -84,6 +85,12 @@ def _turns(turns: Turns, most: int = 700) -> list[Path_]:
     return found
 
 
+def _drives(presses: Presses, depth: int = 2) -> list[Path_]:
+    """Return up to `depth` presses, with the sliders as they are."""
+    every = [presses.record(name) for name in presses.names]
+    return [path for n in range(depth + 1) for path in product(every, repeat=n)]
+
+
 #: How each explorer of the chapters lives, by the call that ends its cell.
 LIVING: dict[str, Living] = {
     "horizon_explorer()": Living(widgets.horizon_explorer),
@@ -127,8 +134,10 @@ LIVING: dict[str, Living] = {
     ),
     "control_panel()": Living(
         widgets.control_panel,
-        ({"presses": ((),), "head": START}, {"presses": ((),), "left": START, "right": START}),
-        lambda presses: [()],
+        ({"presses": ((),), "head": START}, {"left": START, "right": START, "head": START}),
+        _drives,
+        "the buttons walk with the strides as they are at first, for two presses; in the "
+        "notebook they take the strides and the head from the sliders",
     ),
     "sighting_explorer()": Living(widgets.sighting_explorer),
     "film_explorer(approach.trajectory(6))": Living(
@@ -415,7 +424,7 @@ def packed(living: Living) -> bytes:
 
 def _hidden(explorer: Explorer, made: Mapping[str, Handle]) -> dict[str, list[list[str]]]:
     """Return, for each menu and each of its stops, the controls that are not shown."""
-    found = {}
+    found: dict[str, list[list[str]]] = {}
     for name, handle in made.items():
         if handle.look["kind"] != "menu":
             continue

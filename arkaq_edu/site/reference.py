@@ -12,6 +12,7 @@ from types import ModuleType
 from typing import Any
 
 import gymnasium
+import numpy as np
 from PIL import Image
 
 from arkaq_edu import envs
@@ -241,5 +242,5 @@ def envs_class(name: str) -> type[gymnasium.Env]:
 def _photograph(name: str, file: Path) -> None:
     env = gymnasium.make(name, render_mode="rgb_array")
     env.reset(seed=0)
-    Image.fromarray(env.render()).save(file)
+    Image.fromarray(np.asarray(env.render())).save(file)
     env.close()

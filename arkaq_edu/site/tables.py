@@ -53,7 +53,7 @@ def _draw(number: str, file: Path) -> str:
 def _card(number: str, fact: str) -> str:
     told, seen = caption(number, FIGURES[number]), html.escape(fact[:1].upper() + fact[1:])
     return (
-        f'(figure-{number.replace(".", "-")})=\n### Figure {number}\n\n'
+        f"(figure-{number.replace('.', '-')})=\n### Figure {number}\n\n"
         f'<figure class="arkaq-figure"><img loading="lazy" alt="{told} {seen}" '
         f'src="{PICTURES}/figure-{number}.png"><figcaption>{told} {seen}.</figcaption></figure>\n'
     )
@@ -64,8 +64,8 @@ def write_trace(page: Path) -> None:
     names, titles = documented(), {chapter.name: chapter.title for chapter in chapters()}
     rows = table()
     parts = [
-        "# From the thesis to the code\n\nEach equation, figure and section of the thesis, and each "
-        "of its misprints, with the code, the tests and the chapters in which it lives. "
+        "# From the thesis to the code\n\nEach equation, figure and section of the thesis, and "
+        "each of its misprints, with the code, the tests and the chapters in which it lives. "
         "`arkaq trace 2.47` says the same, and names them all.\n"
     ]
     for kind, title in _KINDS.items():
@@ -74,7 +74,9 @@ def write_trace(page: Path) -> None:
             homes = [_home(row, names) for row in own[own.name != ""].itertuples()]
             tests = [f"`{test.removeprefix('tests/')}`" for test in _all(own.tests)]
             read = [_chapter(name, titles) for name in _all(own.notebooks)]
-            place = f"[{number}](#figure-{number.replace('.', '-')})" if kind == "figure" else number
+            place = (
+                f"[{number}](#figure-{number.replace('.', '-')})" if kind == "figure" else number
+            )
             parts.append(
                 f"| {place} | {_some(homes)} | {_some(tests)} | {_some(read, len(read))} |"
             )

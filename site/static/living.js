@@ -182,8 +182,10 @@
 
     const controls = make("div", { className: "arkaq-controls" });
     data.handles.forEach((handle, i) => {
-      const offered = (stop) => settings.scene(setting.with(i, stop)) !== undefined;
-      const [row, tell] = HANDLES[handle.kind](handle, settings.stops(i), (stop) => go(i, stop), offered);
+      const stops = settings.stops(i);
+      const offered = (stop) => stops.includes(stop);
+      const [row, tell] = HANDLES[handle.kind](handle, stops, (stop) => go(i, stop), offered);
+      if (stops.length === 1) row.hidden = true; // it needs the notebook
       rows[handle.name] = row;
       shows.push(tell);
       controls.append(row);

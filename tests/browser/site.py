@@ -55,8 +55,10 @@ def open_page(chromium):
         )
         page.on(
             "request",
-            lambda request: request.url.startswith(("file:", "data:", "blob:"))
-            or page.faults.append(f"asks for {request.url}"),
+            lambda request: (
+                request.url.startswith(("file:", "data:", "blob:"))
+                or page.faults.append(f"asks for {request.url}")
+            ),
         )
         page.on("requestfailed", lambda request: page.faults.append(f"no {request.url}"))
         page.goto(path.as_uri())
@@ -104,7 +106,8 @@ def test_every_explorer_follows_the_keyboard(open_page, path, capsys):
                 page.wait_for_timeout(30)
                 times += page.evaluate("times")
                 pictures.append(canvas.evaluate(PICTURE))
-            assert len(set(pictures)) > 2, f"{name}: {slider.get_attribute('id')} changes nothing"
+            low, high = pictures[:2]
+            assert low != high, f"{name}: {slider.get_attribute('title')}: changes nothing"
         for button in place.get_by_role("button").all()[:3]:
             before = canvas.evaluate(PICTURE)
             button.click()
