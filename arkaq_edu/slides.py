@@ -19,6 +19,10 @@ LIBRARIES = {
     "jquery_url": "node_modules/jquery/dist/jquery.min.js",
 }
 
+#: nbconvert's page without the library for diagrams, which comes from the web and no chapter needs.
+TEMPLATE = """{% extends 'reveal/index.html.j2' %}
+{% block html_head_js_mermaidjs %}{% endblock %}"""
+
 
 def slides(out: Path | str) -> list[Path]:
     """Write each chapter as a page of slides, and return the pages.
@@ -44,7 +48,7 @@ def slides(out: Path | str) -> list[Path]:
     out, pages = Path(out), []
     local = LIBRARIES if (out / "node_modules").is_dir() else {}
     exporter = SlidesExporter(
-        reveal_scroll=True, reveal_theme="white",
+        raw_template=TEMPLATE, embed_images=True, reveal_scroll=True, reveal_theme="white",
         exclude_input_prompt=True, exclude_output_prompt=True, **local,
     )  # fmt: skip
     for master in sorted((course_folder() / "notebooks").glob("*.ipynb")):
@@ -55,7 +59,8 @@ def slides(out: Path | str) -> list[Path]:
             describe(cell)
         page = out / f"{master.stem}.slides.html"
         with replacing(page) as fresh:
-            fresh.write_text(exporter.from_notebook_node(notebook)[0], "utf-8")
+            place = {"metadata": {"path": str(master.parent)}}
+            fresh.write_text(exporter.from_notebook_node(notebook, place)[0], "utf-8")
         pages.append(page)
     return pages
 

@@ -1,5 +1,6 @@
 """What a teacher gets: a release, slides, and a list of known mistakes that is current."""
 
+import re
 import zipfile
 from pathlib import Path
 
@@ -85,8 +86,11 @@ def test_slides_show_each_output_at_a_key_press_and_no_solution(tmp_path, monkey
     (tmp_path / "notebooks").mkdir()
     for master in one:
         (tmp_path / "notebooks" / master.name).write_bytes(master.read_bytes())
+    (tmp_path / "out" / "node_modules").mkdir(parents=True)
     (page,) = slides(tmp_path / "out")
     text = page.read_text("utf-8")
     assert text.count("<section") > 30 and text.count('class="fragment') > 10
     assert "BEGIN SOLUTION" not in text and "NotImplementedError" in text
     assert "exercises.turn.check" not in text.replace("<span", "") and "data:image/png" in text
+    loaded = re.findall(r"""(?:src|import|from|url\(|link [^>]*href)[=( ]*["']?(http[^"' )]+)""", text)
+    assert loaded == [], "with the libraries beside them the slides need no network"
