@@ -92,5 +92,7 @@ def test_slides_show_each_output_at_a_key_press_and_no_solution(tmp_path, monkey
     assert text.count("<section") > 30 and text.count('class="fragment') > 10
     assert "BEGIN SOLUTION" not in text and "NotImplementedError" in text
     assert "exercises.turn.check" not in text.replace("<span", "") and "data:image/png" in text
-    loaded = re.findall(r"""(?:src|import|from|url\(|link [^>]*href)[=( ]*["']?(http[^"' )]+)""", text)
+    loads = r"""(?:src|import|from|url\(|link [^>]*href)[=( ]*["']?(http[^"' )]+)"""
+    assert re.findall(loads, text.replace("node_modules", "http://here")), "it finds what is loaded"
+    loaded = re.findall(loads, text)
     assert loaded == [], "with the libraries beside them the slides need no network"
