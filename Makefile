@@ -26,7 +26,7 @@ export UV_HTTP_RETRIES := 10
 export UV_HTTP_TIMEOUT := 120
 
 .PHONY: help install lab author slides grading student teaching test test-lowest test-newest \
-	soak fuzz check reproduce bench guard latency visits notebooks site site-check lock wheels \
+	soak fuzz check reproduce bench guard latency visits live notebooks site site-check lock wheels \
 	coverage mutation
 
 help:
@@ -39,6 +39,7 @@ help:
 	@echo 'make guard      check in a few seconds that nothing has become twice as slow'
 	@echo 'make latency    measure in Chromium how fast every picture follows its slider'
 	@echo 'make visits     visit the page of `arkaq explore` fifty times in Chromium'
+	@echo 'make live       let the live robot go in Chromium for some minutes'
 	@echo 'make site       write the whole course as web pages, into build/site'
 	@echo 'make site-check visit every page of build/site in Chromium'
 	@echo 'make notebooks  run the notebooks and store what they show'
@@ -120,6 +121,9 @@ latency: $(READY)
 
 visits: $(BIN)/voila
 	$(BIN)/python -m pytest tests/browser/visits.py -q
+
+live: $(READY)
+	$(BIN)/python -m pytest tests/browser/live.py -q
 
 $(BIN)/voila: $(READY)
 	$(BIN)/python -m pip install --quiet voila

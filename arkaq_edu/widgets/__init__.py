@@ -17,7 +17,7 @@ from arkaq_edu.widgets.film import film_explorer
 from arkaq_edu.widgets.goal import scoring_explorer
 from arkaq_edu.widgets.kalman import kalman_explorer
 from arkaq_edu.widgets.learning import bandit_explorer, horizon_explorer
-from arkaq_edu.widgets.live import LiveRobot, LiveView, live_robot, race
+from arkaq_edu.widgets.live import live_robot, race, vigilance_robot
 from arkaq_edu.widgets.mdp import planning_explorer, q_learning_explorer
 from arkaq_edu.widgets.pomdp import bowl_explorer, value_explorer
 from arkaq_edu.widgets.segmentation import vigilance_explorer
@@ -41,6 +41,7 @@ EXPLORERS: dict[str, Callable[..., Explorer]] = {
     "robot": live_robot,
     "robot-goal": partial(live_robot, "goal"),
     "race": race,
+    "walk": vigilance_robot,
 }
 
 __all__ = [
@@ -49,8 +50,6 @@ __all__ = [
     "CanvasView",
     "Drag",
     "Explorer",
-    "LiveRobot",
-    "LiveView",
     "bandit_explorer",
     "belief_explorer",
     "bowl_explorer",
@@ -68,4 +67,5 @@ __all__ = [
     "sighting_explorer",
     "value_explorer",
     "vigilance_explorer",
+    "vigilance_robot",
 ]

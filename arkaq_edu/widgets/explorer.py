@@ -322,7 +322,7 @@ class Explorer(ipywidgets.VBox):
     draw : callable
         Takes the values of the controls by name and returns a `Scene`. It is a plain function, so
         it can be tested without a browser.
-    view : CanvasView, optional
+    canvas : CanvasView, optional
         What draws it.
     **controls : ipywidgets widget
         Widgets with a ``value``: sliders, menus, `Buttons`, `Drag`.
@@ -354,10 +354,11 @@ class Explorer(ipywidgets.VBox):
     def __init__(
         self,
         draw: Callable[..., Scene],
-        view: Any = None,
+        canvas: Any = None,
+        /,
         **controls: ipywidgets.DOMWidget,
     ) -> None:
-        self.view = CanvasView() if view is None else view
+        self.view = CanvasView() if canvas is None else canvas
         self.controls = controls
         self.error: Exception | None = None
         self.draw = draw

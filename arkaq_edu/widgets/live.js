@@ -4,7 +4,8 @@
 // A frame is one cycle of the robot: a movement, then the look and the decision at its end.
 //
 //   edits            how many pushes by hand are already in it
-//   title, words     who drives and with what success; what happens, in one sentence
+//   title            who drives, and with what success
+//   words, brief     what happens, in a sentence and in a few words
 //   outcome, over    how the episode ended, or ""; whether it has
 //   motion           rows [t, x, y, heading, pan, ball x, ball y (, paw x, paw y)]: s, mm, rad.
 //                    One row alone begins an episode
@@ -27,7 +28,7 @@
 // { before, frame, t }: two frames after `follow`, and the seconds since the movement began. There
 // is one, or there are two for a race; `held` may say where a hand holds { ball, robot }. `look` is { ink, ratio }. `liveHeight` tells its height.
 
-const GAP = 14;
+const [GAP, EDGE] = [14, 5];
 const CARPET = "#3a7d4b";
 const CHALK = "#f0f0eb";
 const ORANGE = "#f06928";
@@ -59,10 +60,11 @@ function rowOf({ frame, t, held }) {
   return row;
 }
 
-// Where each part stands, by the width alone.
-function livePlan(width, lanes) {
-  const wide = width >= NARROW;
-  const box = (x, y, w, h) => ({ x, y, width: w, height: h });
+// Where each part stands, by the width alone. Around it is room for the outline of the focus.
+function livePlan(full, lanes) {
+  const wide = full >= NARROW;
+  const width = full - 2 * EDGE;
+  const box = (x, y, w, h) => ({ x: x + EDGE, y: y + EDGE, width: w, height: h });
   const axes = (x, y, w, h) =>
     box(x + MARGIN.left, y + MARGIN.top, w - MARGIN.left - MARGIN.right, h - MARGIN.top - MARGIN.bottom);
   if (lanes > 1) {
@@ -78,7 +80,7 @@ function livePlan(width, lanes) {
         values: box(x + map + GAP, y + field + GAP + 16, w - map - GAP, below - 46),
       };
     });
-    return { plans, height: wide ? height : 2 * height };
+    return { plans, height: (wide ? height : 2 * height) + 2 * EDGE };
   }
   if (!wide) {
     const field = Math.round((width * 2) / 3);
@@ -93,7 +95,7 @@ function livePlan(width, lanes) {
       automaton: box(0, low + eye + map + GAP, width, 84),
       curve: axes(0, low + eye + map + GAP + 84, width, 150),
     };
-    return { plans: [plan], height: low + eye + map + GAP + 84 + 150 };
+    return { plans: [plan], height: low + eye + map + GAP + 84 + 150 + 2 * EDGE };
   }
   const field = Math.round(0.585 * width);
   const [x, tall] = [field + GAP, Math.round((field * 2) / 3)];
@@ -110,7 +112,7 @@ function livePlan(width, lanes) {
     values: box(x + eye + GAP, 18, rest - eye - GAP, low - 18),
     map: axes(x, low + 4, rest, height - low - 4),
   };
-  return { plans: [plan], height };
+  return { plans: [plan], height: height + 2 * EDGE };
 }
 
 const liveHeight = (width, lanes) => livePlan(width, lanes).height;
@@ -192,8 +194,9 @@ function drawField(ctx, stage, { before, frame, t, held }, box) {
   const trail = moving ? [...before.trail, [x, y]] : frame.trail;
   stroke(trail, "rgba(255, 255, 255, 0.75)", 22);
   if (moving) {
-    const rolled = frame.motion.filter(([when]) => when <= t).map((each) => [each[5], each[6]]);
-    stroke([...rolled, [ballX, ballY]], "rgba(255, 214, 180, 0.8)", 18);
+    // Not from the first row: before a kick the supervisor puts the ball there.
+    const rolled = frame.motion.slice(1).filter(([when]) => when <= t);
+    stroke([...rolled.map((each) => each.slice(5, 7)), [ballX, ballY]], "rgba(255, 214, 180, 0.8)", 18);
   }
 
   // Where the robot believes the ball, or the goal, to be.
@@ -225,7 +228,7 @@ function drawField(ctx, stage, { before, frame, t, held }, box) {
     ctx.fillStyle = "white";
     ctx.fillText(shown, box.x + 16, at + 0.5);
   };
-  caption(frame.title, box.y + 19, "rgba(20, 40, 26, 0.72)");
+  caption(seen.title, box.y + 19, "rgba(20, 40, 26, 0.72)");
   if (!moving && frame.outcome) caption(frame.outcome, box.y + box.height - 19, stage.ours);
 }
 
@@ -337,7 +340,7 @@ function drawValues(ctx, stage, frame, box, { ink }) {
   const each = box.height / stage.actions.length;
   ctx.textBaseline = "middle";
   stage.actions.forEach((name, i) => {
-    const y = box.y + i * each;
+    const y = box.y + 3 + i * each;
     const chosen = i === frame.action;
     ctx.save();
     if (chosen) ctx.font = ctx.font.replace(/^/, "bold ");
@@ -480,7 +483,8 @@ function renderLive({ model, el }) {
 
   const speed = () => model.get("speed");
   const ends = () => Math.max(...lanes.map((lane) => lasts(lane.frame)));
-  const waits = () => ends() + Math.max(...lanes.map((lane) => holds(lane.frame)));
+  const pause = () => Math.max(...lanes.map((lane) => holds(lane.frame)));
+  const waits = () => ends() + (model.get("playing") ? pause() : 0);
   const t = () => lanes[0]?.t ?? 0;
   const going = () => model.get("playing") || queue.length > 0 || t() < ends();
 
@@ -524,10 +528,11 @@ function renderLive({ model, el }) {
   }
 
   function tell() {
-    const who = ({ frame }) => (lanes.length > 1 ? `${frame.title}; ${frame.words}` : frame.words);
-    const words = lanes.map(who).join(" | ");
+    const seen = lanes.map(({ before, frame, t }) => (t < lasts(frame) ? before : frame));
+    const say = (each) => (lanes.length > 1 ? `${each.title}; ${each.brief}` : each.words);
+    const words = seen.map(say).join(" | ");
     if (fact.textContent !== words) fact.textContent = words;
-    const soon = performance.now() > saidAt + SILENCE || lanes.some((lane) => lane.frame.outcome);
+    const soon = performance.now() > saidAt + SILENCE || seen.some((each) => each.outcome);
     if ((model.get("playing") && !soon) || spoken.textContent === words) return;
     spoken.textContent = words;
     canvas.setAttribute("aria-label", words);
@@ -551,6 +556,10 @@ function renderLive({ model, el }) {
   }
   const repaint = () => {
     stale = true;
+    wake();
+  };
+  const begin = () => {
+    asked = false; // what was asked before may have failed
     wake();
   };
 
@@ -665,7 +674,7 @@ function renderLive({ model, el }) {
   });
   room.observe(el);
   model.on("msg:custom", receive);
-  model.on("change:playing change:speed", wake);
+  model.on("change:playing change:speed", begin);
   model.send({ kind: "hello" });
   return () => {
     visible = false;
@@ -675,7 +684,7 @@ function renderLive({ model, el }) {
     room.disconnect();
     friend?.disconnect();
     model.off("msg:custom", receive);
-    model.off("change:playing change:speed", wake);
+    model.off("change:playing change:speed", begin);
   };
 }
 

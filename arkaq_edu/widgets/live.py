@@ -15,11 +15,13 @@ import anywidget
 import ipywidgets
 import traitlets
 
+from arkaq_edu import _checks
 from arkaq_edu.arkaq import Arkaq
 from arkaq_edu.experiments.policies import Policy
 from arkaq_edu.widgets.explorer import WRAP, Explorer, button, sized, slider, stops
 from arkaq_edu.widgets.robot import CHANCE, TRAINED, Robot
 from arkaq_edu.widgets.scene import Scene
+from arkaq_edu.widgets.segmentation import vigilance_explorer
 
 Name = Literal["approach", "goal"]
 
@@ -27,7 +29,6 @@ Name = Literal["approach", "goal"]
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 0.0)
 
 _PUSH, _TURN = 100.0, 0.15  # mm and rad that a key pushes
-_LENGTH = 60  # of the words that show where a race stands
 
 
 class LiveView(anywidget.AnyWidget):
@@ -78,7 +79,7 @@ class LiveRobot(Explorer):
     >>> robot = live_robot()
     >>> robot.step()
     >>> robot.controls["noise"].value = 200
-    >>> str(robot).startswith("the trained agent; cycle 1: seen at 2,")
+    >>> str(robot).startswith("cycle 1: seen at 2,")
     True
     """
 
@@ -92,7 +93,7 @@ class LiveRobot(Explorer):
         view = LiveView(stage=first.stage(), help=_HELP[first.name])
         names = ("driver",) if len(robots) == 1 else ("left", "right")
         wheel = dict(zip(names, drivers or [first.drivers[0]] * len(names), strict=True))
-        narrow = sized("6em", 23)
+        narrow = sized("7em", 24)
         controls: dict[str, Any] = {
             "play": ipywidgets.ToggleButton(
                 description="play", tooltip="Let it go, or stop (Space)", layout={"width": "auto"}
@@ -172,7 +173,8 @@ class LiveRobot(Explorer):
         stills = [robot.still() for robot in self.robots]
         if len(stills) == 1:
             return stills[0]
-        return Scene(" | ".join(s.fact for s in stills), [s.panels[0] for s in stills])
+        fact = " | ".join(f"{robot.title}; {robot.brief}" for robot in self.robots)
+        return Scene(fact, [still.panels[0] for still in stills])
 
     def _redraw(self) -> None:
         values = {name: box.value for name, box in self.controls.items()}
@@ -206,6 +208,8 @@ class LiveRobot(Explorer):
 
     def _asked(self, _: Any, message: Mapping[str, Any], buffers: Any) -> None:
         self._try(lambda: self._answer(**message))
+        if self.error is not None:
+            self.controls["play"].value = False
 
     def _answer(self, kind: str, **said: Any) -> None:
         if kind == "hello":
@@ -255,7 +259,9 @@ def _push(
 
 
 def live_robot(
-    task: Name = "approach", agents: Mapping[str, Arkaq | Policy] | None = None
+    task: Name = "approach",
+    agents: Mapping[str, Arkaq | Policy] | None = None,
+    driver: str | None = None,
 ) -> LiveRobot:
     """Return a robot that goes as you watch, with all that it sees, believes and decides.
 
@@ -265,10 +271,18 @@ def live_robot(
         What it does: walk to the ball, or turn to the goal and kick.
     agents : mapping of str to Arkaq or Policy, optional
         One's own, by the name under which they stand in the menu, before the others.
+    driver : str, optional
+        Who is at the wheel at first: one of one's own, or of `arkaq_edu.widgets.robot.DRIVERS`. By
+        default the first in the menu.
 
     Returns
     -------
     LiveRobot
+
+    Raises
+    ------
+    ValueError
+        If the task or the driver is unknown.
 
     References
     ----------
@@ -277,9 +291,11 @@ def live_robot(
     Examples
     --------
     >>> live_robot("goal")
-    the trained agent; cycle 0: seen at −0.12 rad, believed at −0.12 rad; state 10: turn right
+    cycle 0: seen at −0.12 rad, believed at −0.12 rad; state 10: turn right
     """
-    return LiveRobot([Robot(task, agents)])
+    robot = Robot(task, agents)
+    first = robot.drivers[0] if driver is None else driver
+    return LiveRobot([robot], _checks.choice("driver", first, robot.drivers))
 
 
 def race(task: Name = "approach", agents: Mapping[str, Arkaq | Policy] | None = None) -> LiveRobot:
@@ -301,3 +317,49 @@ def race(task: Name = "approach", agents: Mapping[str, Arkaq | Policy] | None = 
     """
     first, second = [*(agents or {}), TRAINED, CHANCE][:2]
     return LiveRobot([Robot(task, agents) for _ in range(2)], first, second)
+
+
+class VigilanceRobot(LiveRobot):
+    """The vigilance explorer above a robot that walks by its map; see `vigilance_robot`."""
+
+    def __init__(self) -> None:
+        super().__init__([Robot()])
+        self.explorer = vigilance_explorer()
+        theirs, ours = self.explorer.controls["vigilance"], self.controls["vigilance"]
+        ours.min, ours.max, ours.step = theirs.min, theirs.max, theirs.step
+        theirs.value = ours.value
+        traitlets.link((theirs, "value"), (ours, "value"))
+        # The robot's map is that of the recorded stream: what else the explorer offers would not
+        # change it.
+        for name in ("method", "cosine", "order", "eta", "n"):
+            self.explorer.controls[name].layout.display = "none"
+        ours.layout.display = "none"
+        self.children = [self.explorer, *self.children]
+
+    def _scene(self, **values: Any) -> Scene:
+        robot, partition = self.robots[0], self.explorer.drawn
+        counted = partition.fact.split(";")[0].split(",")[0]
+        fact = f"{counted}; {robot.title}; {robot.brief}"
+        return Scene(fact, [partition.panels[0], robot.still().panels[0]])
+
+
+def vigilance_robot() -> LiveRobot:
+    """Return the vigilance explorer above a robot that walks by its map: one vigilance for both.
+
+    Returns
+    -------
+    LiveRobot
+        Its ``controls["vigilance"]`` follows that of its ``explorer``, and leads it.
+
+    References
+    ----------
+    Thesis, section 5.2.1, figures 5.9 to 5.16.
+
+    Examples
+    --------
+    >>> both = vigilance_robot()
+    >>> both.controls["vigilance"].value = 0.2
+    >>> both
+    104 categories at vigilance 0.2; the trained agent; cycle 0: left
+    """
+    return VigilanceRobot()

@@ -7,10 +7,11 @@ is chosen: an agent, a planner, chance, or an agent that is still learning.
 from __future__ import annotations
 
 import base64
+import copy
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import lru_cache, partial
 from itertools import count
 from threading import RLock
 from typing import Any, Literal
@@ -30,6 +31,7 @@ from arkaq_edu.arkaq import (
     Estimator,
     Sensing,
 )
+from arkaq_edu.arkaq.training import FINISHED
 from arkaq_edu.art.geometry import voronoi_cells
 from arkaq_edu.envs import ball_approach, score_goal
 from arkaq_edu.experiments import approach, goal, segmentation
@@ -150,7 +152,7 @@ class Senses(gymnasium.Wrapper):
         if not observation[-1] or self.rng.random() < self.dropout:
             return np.zeros_like(observation)
         if self.noise:
-            spread = np.full(len(observation) - 1, self.noise)
+            spread = np.full(len(observation) - 1, float(self.noise))
             spread[-1] /= self._range or max(observation[0], 1.0)  # what lies aside, as an angle
             observation = observation.copy()
             observation[:-1] += spread * self.rng.standard_normal(len(spread))
@@ -201,7 +203,8 @@ class Robot:
     task : {"approach", "goal"}
         What it does.
     agents : mapping of str to Arkaq or Policy, optional
-        One's own, by the name under which they can be chosen.
+        One's own, by the name under which they can be chosen. A copy of an agent that has not
+        finished learning goes on to learn.
 
     Attributes
     ----------
@@ -219,8 +222,9 @@ class Robot:
     >>> robot = Robot()
     >>> frame = robot.step()
     >>> frame["words"]
-    'cycle 1: seen at 2,716 mm, +0.14 rad, believed at 2,716 mm, +0.14 rad; state 9: left'
+    'cycle 1: seen at 2,387 mm, +0.20 rad, believed at 2,443 mm, +0.20 rad; state 51: left'
     >>> robot.set(driver="chance", seed=3)
+    True
     >>> robot.step()["title"]
     'chance'
     """
@@ -239,6 +243,7 @@ class Robot:
         self.cell: int | None = None
         self._choose: Choice | None = None
         self._filming = True
+        self._lattice: tuple[Any, Any] = (None, None)
         self._shown: dict[str, Any] = {}
         self._lock = RLock()  # a notebook may answer the page while a cell runs
         self.noise, self.dropout, self.drift = 0.0, 0.0, 1.0
@@ -279,7 +284,8 @@ class Robot:
             self.seed, self.vigilance = _checks.integer("seed", seed), vigilance
             self.noise, self.dropout, self.drift = noise, dropout, drift
             changed = before != (driver, seed, vigilance)
-            again = changed and (LEARNING in (before[0], driver) or seed != before[1])
+            learns = self._learns(before[0]) or self._learns(driver)
+            again = changed and (learns or seed != before[1])
             if again:
                 self.restart()
             elif changed:
@@ -293,8 +299,12 @@ class Robot:
     def restart(self) -> None:
         """Begin with the first episode."""
         self._forget()
-        self._run = self._learn() if self.driver == LEARNING else self._play()
+        self._run = self._learn() if self._learns(self.driver) else self._play()
         self.advance()
+
+    def _learns(self, driver: str) -> bool:
+        own = self.own.get(driver)
+        return driver == LEARNING or (isinstance(own, Arkaq) and own.phase != FINISHED)
 
     def _forget(self) -> None:
         self.wins = self.episodes = 0
@@ -309,7 +319,11 @@ class Robot:
         """Go on by one cycle; the motion has more than its two ends only while `filming`."""
         with self._lock:
             self._filming = filming
-            next(self._run)
+            try:
+                next(self._run)
+            except Exception:  # one's own agent failed; what it did not end begins again
+                self._run = self._play()
+                raise
 
     def move_ball(self, x: float, y: float) -> None:
         """Put the ball somewhere else on the carpet (mm)."""
@@ -371,7 +385,9 @@ class Robot:
             yield
 
     def _learn(self) -> Iterator[None]:
-        self.agent = agent = Arkaq(self.vigilance, task=self.name, rng=self.seed)
+        own: Any = copy.deepcopy(self.own.get(self.driver))
+        agent: Arkaq = own or Arkaq(self.vigilance, task=self.name, rng=self.seed)
+        self.agent = agent
         *before, last = self.task.make_lessons()
         for env in (*before, last):
             self._enter(env, agent.estimator)
@@ -395,16 +411,17 @@ class Robot:
                 yield
                 self.senses.film(self._filming)
                 self.passed = []
+        self.wins = self.episodes = 0  # from here on it shows what it has learned
         yield from self._play()
 
     def _sit(self, episode: int = 0) -> None:
         """Put who was chosen at the wheel."""
         chosen = self.own.get(self.driver)
-        if isinstance(chosen, Arkaq):
-            if chosen.q is None:
-                raise ValueError(f"agents must have learned, {self.driver!r} has not")
+        if self._learns(self.driver):
+            pass  # it is there already
+        elif isinstance(chosen, Arkaq):
             self.agent = chosen
-        elif self.driver != LEARNING:
+        else:
             self.agent = _agent(self.name, self.vigilance)
         policy: Any = None if isinstance(chosen, Arkaq) else chosen
         if self.driver == PLANNER:
@@ -455,7 +472,7 @@ class Robot:
         else:
             end = "too late" if self._observation[-1] else "the ball is lost"
         times = f"{self.cycles} cycle{'s' * (self.cycles != 1)}"
-        self.outcome = f"{end} after {times}: {self.reward:+.0f}"
+        self.outcome = f"{end} after {times}: {self.reward:+.0f}".replace("-", "−")
 
     # What it tells.
 
@@ -479,6 +496,12 @@ class Robot:
             words += f"; state {self.cell}"
         return words if self.action is None else f"{words}: {self.task.actions[self.action]}"
 
+    @property
+    def brief(self) -> str:
+        """The same in a few words."""
+        chosen = "" if self.action is None else f": {self.task.actions[self.action]}"
+        return self.outcome or f"cycle {self.cycles}{chosen}"
+
     def frame(self, whole: bool = False) -> dict[str, Any]:
         """Return the present as plain JSON, as live.js draws it.
 
@@ -491,7 +514,8 @@ class Robot:
             world, seen = self.senses.world, self._observation
             frame = {
                 "edits": self.edits,
-                "title": self.title, "words": self.words, "outcome": self.outcome,
+                "title": self.title, "words": self.words, "brief": self.brief,
+                "outcome": self.outcome,
                 "over": self.over, "motion": self.senses.motion,
                 "eye": _runs(self.senses.camera.colors(world)),
                 "mark": self._mark(seen[:-1]) if seen[-1] else None,
@@ -543,8 +567,17 @@ class Robot:
         col, row = camera.pixel(world, float(z[0]), float(z[1]), pitch.BALL_RADIUS)
         return _short((col, row, abs(FOCAL_LENGTH * pitch.BALL_RADIUS / z[0]) + 3))
 
+    def _centers(self) -> tuple[NDArray[np.float64], list[int]]:
+        """Return the centers of the map's cells, and their categories."""
+        art = self.agent.art
+        if hasattr(art, "cluster_centers_"):
+            return art.cluster_centers_, list(range(art.n_clusters_))
+        if self._lattice[0] is not art:
+            self._lattice = art, _sampled(art, self._m)
+        return self._lattice[1]
+
     def _cell(self) -> int | None:
-        categories = _centers(self.agent)[1]
+        categories = self._centers()[1]
         return categories.index(self.cell) if self.cell in categories else None
 
     def _values(self) -> list[float] | None:
@@ -556,11 +589,11 @@ class Robot:
         """Return the best action in each cell of the map."""
         if self.agent.q is None:
             return []
-        return self.agent.q.Q[_centers(self.agent)[1]].argmax(axis=1).tolist()
+        return self.agent.q.Q[self._centers()[1]].argmax(axis=1).tolist()
 
     def _map(self) -> list[list[float]]:
         """Return the cells: the corners of each, x and y in turn."""
-        centers = _centers(self.agent)[0]
+        centers = self._centers()[0]
         if self.name == "goal":
             place = self.agent.sensing.unscale(centers).ravel()
             order = np.argsort(-place)
@@ -631,24 +664,24 @@ class Robot:
         if (cell := self._cell()) is not None:
             view.insert(1, Line.around(cells[cell], style.INK, 2.0))
         return Scene(
-            f"{self.title}; {self.words}",
+            self.words,
             [
                 Panel("", "", EXTENT[:2], EXTENT[2:], above, width=1.6, bare=True),
-                Panel("", "", (0.0, WIDTH), (0.0, HEIGHT), eye, bare=True),
+                Panel("", "", (0.0, WIDTH), (0.0, HEIGHT), eye, width=0.8, bare=True),
                 Panel(
-                    axes["xlabel"], axes["ylabel"], axes["xlim"], axes["ylim"], view, width=1.2,
+                    axes["xlabel"], axes["ylabel"], axes["xlim"], axes["ylim"], view, width=1.5,
                     yticks=None if axes["yticks"] else [],
                 ),
             ],
         )  # fmt: skip
 
 
-@cache
+@lru_cache(2)
 def _trained(task: str) -> Arkaq:
     return TASKS[task].load_agent()
 
 
-@cache
+@lru_cache(32)
 def _agent(task: str, vigilance: float) -> Arkaq:
     """Return the trained agent, with a map of another vigilance if it is another one."""
     trained = _trained(task)
@@ -674,7 +707,7 @@ def regrouped(agent: Arkaq, patterns: NDArray[np.float64], vigilance: float) -> 
     >>> from arkaq_edu.experiments import approach, segmentation
     >>> coarse = regrouped(approach.load_agent(), segmentation.recorded_patterns(), 0.5)
     >>> coarse.q.Q.shape
-    (17, 3)
+    (62, 3)
     """
     task: Any = agent.task
     coarse = Arkaq(vigilance, task=task, sensing=agent.sensing, learning=agent.learning, rng=0)
@@ -688,20 +721,8 @@ def regrouped(agent: Arkaq, patterns: NDArray[np.float64], vigilance: float) -> 
     return coarse
 
 
-def _centers(agent: Arkaq) -> tuple[NDArray[np.float64], list[int]]:
-    """Return the centers of the map's cells, and their categories.
-
-    A segmenter without centers is asked about a lattice of patterns: the middle of those in one
-    category is its center.
-    """
-    if hasattr(agent.art, "cluster_centers_"):
-        centers = agent.art.cluster_centers_
-        return centers, list(range(len(centers)))
-    return _sampled(agent.art, len(agent.sensing.low))
-
-
-@cache
 def _sampled(segmenter: Any, m: int) -> tuple[NDArray[np.float64], list[int]]:
+    """Return a center of each category of a segmenter that has none: the middle of its patterns."""
     ticks = np.linspace(-1, 1, 62)[1:-1]
     lattice = np.stack(np.meshgrid(*[ticks] * m), axis=-1).reshape(-1, m)
     found = np.array([segmenter.category(pattern) for pattern in lattice])

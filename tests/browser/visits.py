@@ -69,7 +69,7 @@ def kernels(server):
 
 def visit(page, server, query=""):
     page.goto(server.address + query)
-    canvas = page.locator(".arkaq-canvas canvas")
+    canvas = page.locator(".arkaq-canvas canvas").first
     expect(canvas).to_be_visible()
     return canvas
 
@@ -112,6 +112,17 @@ def test_every_explorer_opens_by_name(page, server):
         assert BROKEN.search(page.inner_text("body")) is None
         assert page.locator("nav [aria-current]").inner_text() == name
     assert page.problems == []
+
+
+def test_the_robot_goes_and_its_kernel_goes_too(page, server):
+    canvas = visit(page, server, "?explorer=robot&speed=4.0")
+    canvas.press("Space")
+    expect(canvas).to_have_attribute("aria-label", re.compile("cycle [1-9]"))
+    page.goto("about:blank")
+    deadline = time.monotonic() + 30
+    while kernels(server) and time.monotonic() < deadline:
+        time.sleep(0.2)
+    assert not kernels(server) and page.problems == []
 
 
 def test_fifty_visits_leave_no_kernel(page, server, capsys):
