@@ -16,7 +16,7 @@ _BLANK = (
     r"\1raise NotImplementedError"
 )
 #: The cells that show a widget: their still picture stays, so that a page is not empty.
-_WIDGET = re.compile(r"(_explorer|control_panel)\([^\n]*\)\s*\Z")
+_WIDGET = re.compile(r"(_explorer|_robot|control_panel|\brace)\([^\n]*\)\s*\Z")
 
 
 def students_page(master: str) -> str:

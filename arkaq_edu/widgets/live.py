@@ -93,7 +93,7 @@ class LiveRobot(Explorer):
         view = LiveView(stage=first.stage(), help=_HELP[first.name])
         names = ("driver",) if len(robots) == 1 else ("left", "right")
         wheel = dict(zip(names, drivers or [first.drivers[0]] * len(names), strict=True))
-        narrow = sized("7em", 24)
+        narrow = sized("7em", 21)
         controls: dict[str, Any] = {
             "play": ipywidgets.ToggleButton(
                 description="play", tooltip="Let it go, or stop (Space)", layout={"width": "auto"}
@@ -209,7 +209,9 @@ class LiveRobot(Explorer):
     def _asked(self, _: Any, message: Mapping[str, Any], buffers: Any) -> None:
         self._try(lambda: self._answer(**message))
         if self.error is not None:
-            self.controls["play"].value = False
+            error, words = self.error, self._message.value
+            self.controls["play"].value = False  # as a control that works it would clear these
+            self.error, self._message.value = error, words
 
     def _answer(self, kind: str, **said: Any) -> None:
         if kind == "hello":

@@ -455,7 +455,8 @@ class Robot:
         if self._choose is None:
             self.action = self.agent.q.greedy(self.cell)  # type: ignore[union-attr]
         else:
-            self.action = self._choose(self._observation, self._info)
+            chosen = self._choose(self._observation, self._info)
+            self.action = _checks.integer("action", chosen, 0, len(self.task.actions) - 1)
 
     def _finish(self, won: bool) -> None:
         self.cell, self.action, self.state = (

@@ -289,7 +289,8 @@ def test_controls_reach_the_robot_and_an_error_is_shown():
 
 
 def test_an_agent_that_fails_is_told_and_can_be_replaced():
-    explorer = live_robot(agents={"mine": lambda episode: lambda look, info: 7})
+    actions = iter([0, 7])
+    explorer = live_robot(agents={"mine": lambda episode: lambda look, info: next(actions)})
     page = Page(explorer)
     explorer.controls["play"].value = True
     explorer._asked(None, {"kind": "step"}, [])
