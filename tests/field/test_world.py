@@ -342,6 +342,7 @@ def test_a_generator_or_its_seed_is_the_same():
         (lambda: World().roll_ball((math.nan, 0)), "velocity"),
         (lambda: World().put_ball(3001, 0), "ball must be on the carpet.*3001"),
         (lambda: World().put_ball(math.nan, 0), "ball must be on the carpet.*nan"),
+        (lambda: World().put_robot(0, 2001, 0), "robot must be on the carpet.*2001"),
         (lambda: Legs(variation=-0.1), "variation"),
         (lambda: Legs(slide=2), "slide"),
         (lambda: Legs(pull=0.1), "pull"),
@@ -735,3 +736,13 @@ def test_the_bird_view_shows_the_ball_where_it_is():
         rows, columns = np.nonzero(near_orange)
         assert (rows.mean(), columns.mean()) == pytest.approx((row, column), abs=1.5)
         assert near_orange[row, column]
+
+
+def test_a_robot_that_was_pushed_goes_on_from_there_at_the_same_time():
+    world = World(rng=0, legs=Legs(slide=0, pull=0, variation=0))
+    world.cycle(100, 100)
+    world.put_robot(1000.0, -500.0, math.pi / 2)
+    assert world.pose == (1000.0, -500.0, math.pi / 2)
+    assert world.time == pytest.approx(0.64)
+    world.cycle(100, 100)
+    assert world.pose == pytest.approx((1000.0, -400.0, math.pi / 2), abs=3)
