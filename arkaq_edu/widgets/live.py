@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
@@ -18,7 +19,7 @@ import traitlets
 from arkaq_edu import _checks
 from arkaq_edu.arkaq import Arkaq
 from arkaq_edu.experiments.policies import Policy
-from arkaq_edu.widgets.explorer import WRAP, Explorer, button, sized, slider, stops
+from arkaq_edu.widgets.explorer import WRAP, Explorer, button, sized, slider
 from arkaq_edu.widgets.robot import CHANCE, TRAINED, Robot
 from arkaq_edu.widgets.scene import Scene
 from arkaq_edu.widgets.segmentation import vigilance_explorer
@@ -89,60 +90,18 @@ class LiveRobot(Explorer):
         self.robots = robots
         self.number = 0
         first = robots[0]
-        goal = first.name == "goal"
         view = LiveView(stage=first.stage(), help=_HELP[first.name])
         names = ("driver",) if len(robots) == 1 else ("left", "right")
         wheel = dict(zip(names, drivers or [first.drivers[0]] * len(names), strict=True))
-        narrow = sized("7em", 21)
-        controls: dict[str, Any] = {
-            "play": ipywidgets.ToggleButton(
-                description="play", tooltip="Let it go, or stop (Space)", layout={"width": "auto"}
-            ),
-            "speed": stops(
-                "speed", SPEEDS, 1.0, tooltip="Times real time", **sized("4em", 20)
-            ),
-            "seed": ipywidgets.BoundedIntText(
-                0, min=0, max=9999, description="seed",
-                tooltip="Of the starts and of all chance", **sized("4em", 10),
-            ),
-            **{
-                name: ipywidgets.Dropdown(
-                    options=first.drivers, value=driver, tooltip="Who chooses the actions",
-                    description="at the wheel" if name == "driver" else name, **narrow,
-                )
-                for name, driver in wheel.items()
-            },
-            "vigilance": slider(
-                "vigilance", first.vigilance, 0.02 if goal else 0.05, 0.6, 0.01,
-                tooltip="Of the map: the trained agent's values, averaged over each new cell",
-                **narrow,
-            ),
-            "noise": slider(
-                "noise (mm)", 0, 0, 400, 20,
-                tooltip="How far off a sighting is; the filter is told", **narrow,
-            ),
-            "dropout": slider(
-                "dropout", 0.0, 0.0, 1.0, 0.05,
-                tooltip="How likely a sighting is lost", **narrow,
-            ),
-            "drift": slider(
-                "kick's spread" if goal else "drift", 1.0, 0.0, 1.3 if goal else 10.0,
-                0.1 if goal else 0.5,
-                tooltip="Times the robot's own; it is not told", **narrow,
-            ),
-        }  # fmt: skip
-        controls["speed"].options = [
-            (f"{speed:g} ×" if speed else "as fast as it can", speed) for speed in SPEEDS
-        ]
-        controls["speed"].value = 1.0
+        controls = _controls(first, wheel)
         super().__init__(self._scene, view, **controls)
         traitlets.link((controls["play"], "value"), (view, "playing"))
         view.on_msg(self._asked)
         rows = [
             [
                 controls["play"],
-                button("step", self.step, "One cycle (.)"),
-                button("start again", self.restart, "From the first start of this seed"),
+                button("step", partial(self._try, self.step), "One cycle (.)"),
+                button("start again", partial(self._try, self.restart), "With the first episode"),
                 controls["speed"], controls["seed"],
             ],
             [controls[name] for name in (*names, "vigilance")],
@@ -227,6 +186,50 @@ class LiveRobot(Explorer):
                     _push(robot, **said)
             glances = [robot.glance() for robot in self.robots]
             self.view.send({"kind": "glance", "glances": glances})
+
+
+def _controls(robot: Robot, wheel: Mapping[str, str]) -> dict[str, Any]:
+    """Return the controls by name; `wheel` says who is at it, for a race left and right."""
+    goal = robot.name == "goal"
+    narrow = sized("7em", 21)
+    return {
+        "play": ipywidgets.ToggleButton(
+            description="play", tooltip="Let it go, or stop (Space)", layout={"width": "auto"}
+        ),
+        "speed": ipywidgets.SelectionSlider(
+            options=[(f"{x:g} ×" if x else "as fast as it can", x) for x in SPEEDS],
+            value=1.0, description="speed", tooltip="Times real time", **sized("4em", 20),
+        ),
+        "seed": ipywidgets.BoundedIntText(
+            0, min=0, max=9999, description="seed",
+            tooltip="Of the starts and of all chance", **sized("4em", 10),
+        ),
+        **{
+            name: ipywidgets.Dropdown(
+                options=robot.drivers, value=driver, tooltip="Who chooses the actions",
+                description="at the wheel" if name == "driver" else name, **narrow,
+            )
+            for name, driver in wheel.items()
+        },
+        "vigilance": slider(
+            "vigilance", robot.vigilance, 0.02 if goal else 0.05, 0.6, 0.01,
+            tooltip="Of the map: the trained agent's values, averaged over each new cell",
+            **narrow,
+        ),
+        "noise": slider(
+            "noise (mm)", 0, 0, 400, 20,
+            tooltip="How far off a sighting is; the filter is told", **narrow,
+        ),
+        "dropout": slider(
+            "dropout", 0.0, 0.0, 1.0, 0.05,
+            tooltip="How likely a sighting is lost", **narrow,
+        ),
+        "drift": slider(
+            "kick's spread" if goal else "drift", 1.0, 0.0, 1.3 if goal else 10.0,
+            0.1 if goal else 0.5,
+            tooltip="Times the robot's own; it is not told", **narrow,
+        ),
+    }  # fmt: skip
 
 
 _HELP = {

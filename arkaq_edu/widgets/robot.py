@@ -299,8 +299,11 @@ class Robot:
     def restart(self) -> None:
         """Begin with the first episode."""
         self._forget()
-        self._run = self._learn() if self._learns(self.driver) else self._play()
+        self._run = self._begin()
         self.advance()
+
+    def _begin(self) -> Iterator[None]:
+        return self._learn() if self._learns(self.driver) else self._play()
 
     def _learns(self, driver: str) -> bool:
         own = self.own.get(driver)
@@ -322,7 +325,7 @@ class Robot:
             try:
                 next(self._run)
             except Exception:  # one's own agent failed; what it did not end begins again
-                self._run = self._play()
+                self._run = self._begin()
                 raise
 
     def move_ball(self, x: float, y: float) -> None:
