@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import html
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,7 +13,8 @@ import nbformat
 
 from arkaq_edu._paths import course_folder
 from arkaq_edu._student import blank
-from arkaq_edu.site.living import name_of
+from arkaq_edu.site.living import LIVING, name_of
+from arkaq_edu.site.robots import recording_of
 
 #: The folders of pictures and explorers, as the pages of the site see them.
 PICTURES, EXPLORERS = "_static/pictures", "_static/living"
@@ -67,7 +69,7 @@ def write_chapter(master: Path, folder: Path, pictures: Path) -> None:
         marks = cell.metadata.get("nbgrader", {})
         if marks.get("solution"):
             cell.source = blank(cell.source)
-        alive = explorer_of(cell.source)
+        alive = alive_in(cell.source)
         if asked and cell.outputs and not marks:
             asked = False
             if not alive:
@@ -79,7 +81,8 @@ def write_chapter(master: Path, folder: Path, pictures: Path) -> None:
                 name = f"{master.stem}-{count}.png"
                 (pictures / name).write_bytes(png := base64.b64decode(data["image/png"]))
                 words = output.metadata.get("image/png", {}).get("alt", "")
-                output.data = {"text/html": picture(name, words, png, alive)}
+                shown = picture(name, words, png, bool(alive))
+                output.data = {"text/html": places(alive, shown) if alive else shown}
     nbformat.write(notebook, folder / master.name)
 
 
@@ -94,33 +97,45 @@ def asks(text: str) -> bool:
     return re.search(r"^\*\*(Predict|Before you go on)", text, re.MULTILINE) is not None
 
 
-def explorer_of(source: str) -> str:
-    """Return the call that ends a cell, if it makes an explorer; else an empty text.
+class Alive(NamedTuple):
+    """What comes to life below a cell: the name of its data, and how many robots it shows."""
+
+    name: str
+    lanes: int
+
+
+def alive_in(source: str) -> list[Alive]:
+    """Return what comes to life below a cell, by the call that ends it.
 
     Examples
     --------
-    >>> explorer_of("from arkaq_edu.widgets import belief_explorer\\n\\nbelief_explorer()")
-    'belief_explorer()'
-    >>> explorer_of("quick = scoring_explorer()")
-    ''
+    >>> alive_in("from arkaq_edu.widgets import belief_explorer\\n\\nbelief_explorer()")
+    [Alive(name='belief_explorer', lanes=1)]
+    >>> [alive.name for alive in alive_in("vigilance_robot()")]
+    ['vigilance_explorer', 'robot-vigilance']
+    >>> alive_in("quick = scoring_explorer()")
+    []
     """
-    last = source.strip().splitlines()[-1:]
-    return last[0] if last and re.match(r"(\w+_explorer|control_panel)\(", last[0]) else ""
+    call = source.strip().rpartition("\n")[2]
+    above = "vigilance_explorer()" if call == "vigilance_robot()" else call
+    names = [name_of(above)] if above in LIVING else []
+    names += [recording_of(call)] if recording_of(call) else []
+    return [Alive(name, 1 + call.startswith("race(")) for name in names]
 
 
-def picture(name: str, words: str, png: bytes, alive: str = "") -> str:
-    """Return the HTML of a picture; an explorer's is the place that comes to life."""
-    wide, high = (int.from_bytes(png[i : i + 4], "big") for i in (16, 20))
-    if alive:  # drawn with two pixels for each of the page
-        wide, high = wide // 2, high // 2
-    image = (
+def picture(name: str, words: str, png: bytes, still: bool = False) -> str:
+    """Return the HTML of a picture; a still of an explorer has two pixels for one of the page."""
+    wide, high = (int.from_bytes(png[i : i + 4], "big") // (1 + still) for i in (16, 20))
+    return (
         f'<img class="arkaq-picture" alt="{html.escape(words)}" src="../{PICTURES}/{name}" '
         f'width="{wide}" height="{high}" loading="lazy">'
     )
-    if not alive:
-        return image
-    name = name_of(alive)
-    return (
-        f'<div class="arkaq-living" data-explorer="{name}" data-src="../{EXPLORERS}/{name}.js">'
-        f"{image}</div>"
+
+
+def places(alive: Sequence[Alive], still: str) -> str:
+    """Return the HTML of what comes to life; until then the first place shows the still."""
+    return "".join(
+        f'<div class="arkaq-living" data-explorer="{name}" data-lanes="{lanes}" '
+        f'data-src="../{EXPLORERS}/{name}.js">{still * (i == 0)}</div>'
+        for i, (name, lanes) in enumerate(alive)
     )

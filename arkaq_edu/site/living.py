@@ -10,10 +10,8 @@ presses of buttons. Where an explorer has too many settings, `LIVING` says which
 
 from __future__ import annotations
 
-import base64
 import json
 import re
-import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
@@ -28,6 +26,8 @@ from numpy.typing import NDArray
 from arkaq_edu import widgets
 from arkaq_edu.experiments import approach, goal
 from arkaq_edu.experiments.runs import run_all
+from arkaq_edu.site.packing import rounded, to_bytes, write_script
+from arkaq_edu.site.robots import RECORDINGS, recorded
 from arkaq_edu.widgets import Buttons, Drag, Explorer
 from arkaq_edu.widgets.belief import Turns
 from arkaq_edu.widgets.explorer import START_AGAIN, is_offered
@@ -358,44 +358,9 @@ class Pack:
         return self._known[key]
 
     def to_bytes(self, **more: Any) -> bytes:
-        """Return it all compressed: the length of the JSON, the JSON, four planes of bytes.
-
-        The bytes of the numbers stand plane by plane, the first bytes of all of them, then the
-        second ones: so they compress better.
-        """
+        """Return it all, and what else the page must know, as `packing.to_bytes` does."""
         told = {"layers": self.layers, "panels": self.panels, "scenes": self.scenes, **more}
-        text = json.dumps(told, separators=(",", ":")).encode()
-        text += b" " * (-len(text) % 4)
-        planes = np.concatenate([np.empty(0, np.float32), *self.numbers]).view(np.uint8)
-        planes = planes.reshape(-1, 4).T
-        return zlib.compress(len(text).to_bytes(4, "little") + text + planes.tobytes(), 9)
-
-
-def rounded(numbers: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return numbers to one part in 65,000, so that they compress; no pixel moves.
-
-    Examples
-    --------
-    >>> float(rounded(np.float32([1234.5678]))[0])
-    1234.5625
-    """
-    bits = numbers.view(np.uint32)
-    exact = (bits & 0xFF == 0) | ~np.isfinite(numbers)
-    return np.where(exact, bits, (bits + 0x80) & 0xFFFFFF00).astype(np.uint32).view(np.float32)
-
-
-def unpack(data: bytes) -> tuple[dict[str, Any], NDArray[np.float32]]:
-    """Return the JSON and the numbers of `Pack.to_bytes`, as the page reads them.
-
-    Examples
-    --------
-    >>> unpack(Pack().to_bytes(note="empty"))[0]["note"]
-    'empty'
-    """
-    plain = zlib.decompress(data)
-    end = 4 + int.from_bytes(plain[:4], "little")
-    planes = np.frombuffer(plain[end:], np.uint8).reshape(4, -1)
-    return json.loads(plain[4:end]), np.ascontiguousarray(planes.T).view(np.float32).ravel()
+        return to_bytes(told, np.concatenate([np.empty(0, np.float32), *self.numbers]))
 
 
 def packed(living: Living) -> bytes:
@@ -459,18 +424,6 @@ def _note(made: Mapping[str, Handle], kept: Sequence[tuple[int, ...]], told: str
     return " ".join([*parts, *([f"Here {told}."] if told else [])])
 
 
-def write_explorers(folder: Path) -> None:
-    """Write a file for each explorer of the chapters, and the canvas that draws them."""
-    made = folder / "living"
-    made.mkdir(parents=True)
-    tasks = [delayed(packed)(living) for living in LIVING.values()]
-    for call, data in zip(LIVING, run_all(tasks, -1, True, "explorers"), strict=True):
-        name = name_of(call)
-        text = f'arkaqLiving("{name}", "{base64.b64encode(data).decode()}");\n'
-        (made / f"{name}.js").write_text(text, encoding="ascii")
-    write_canvas(folder)
-
-
 def name_of(call: str) -> str:
     """Return the name of an explorer's file, from the call that makes it.
 
@@ -482,10 +435,25 @@ def name_of(call: str) -> str:
     return re.sub(r"\W+", "-", call).strip("-")
 
 
+def write_explorers(folder: Path) -> None:
+    """Write a file for each explorer and each recording, and the canvas that draws them."""
+    made = folder / "living"
+    made.mkdir(parents=True)
+    tasks = {name_of(call): delayed(packed)(living) for call, living in LIVING.items()}
+    tasks |= {name: delayed(recorded)(recording) for name, recording in RECORDINGS.items()}
+    done = run_all(list(tasks.values()), -1, True, "explorers")
+    for name, data in zip(tasks, done, strict=True):
+        write_script(made / f"{name}.js", data)
+    write_canvas(folder)
+
+
 def write_canvas(folder: Path) -> None:
     """Write the canvas of the notebooks as a plain script: a page from a disk has no modules."""
     source = Path(widgets.__file__).parent
-    script = (source / "canvas.js").read_text(encoding="utf-8")
-    script = script.replace("export default { render };", "window.arkaqCanvas = { render };")
-    (folder / "canvas.js").write_text(f"{{\n{script}\n}}\n", encoding="utf-8")
+    parts = [
+        (source / name).read_text(encoding="utf-8").split("\nexport default")[0]
+        for name in ("canvas.js", "live.js")
+    ]
+    made = ["{", *parts, "window.arkaqCanvas = { render, renderLive };", "}", ""]
+    (folder / "canvas.js").write_text("\n".join(made), encoding="utf-8")
     (folder / "canvas.css").write_text((source / "canvas.css").read_text("utf-8"), "utf-8")

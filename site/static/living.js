@@ -209,7 +209,7 @@
       get: (name) => model.values[name],
       set: (name, value) => (model.values[name] = value),
       on: (_, listener) => listeners.push(listener),
-      off: () => (listeners.length = 0),
+      off: (_, listener) => listeners.splice(listeners.indexOf(listener), 1),
       changed: () => listeners.forEach((listener) => listener()),
       save_changes: () => model.told(),
     };
@@ -250,13 +250,93 @@
     };
   }
 
+  const SPEEDS = [0.25, 0.5, 1, 2, 4, 8, 16];
+
+  // Plays what was recorded of a robot, or of two that race. It answers live.js as a kernel does
+  // (widgets/live.py): with a whole frame each at first, then with one frame after the other.
+  function playRobot(place, data) {
+    const lanes = Number(place.dataset.lanes);
+    const chosen = { seed: 0, vigilance: 0, speed: 2 };
+    const drivers = Array.from({ length: lanes }, (_, i) => (i ? data.texts.driver.length - 1 : 0));
+    const listeners = {};
+    const fire = (name, sent) => (listeners[name] ?? []).forEach((listener) => listener(sent));
+    const values = { stage: data.stage, help: data.help, playing: false, speed: 1 };
+    let number = 0;
+    let at = drivers.map(() => 0);
+
+    const takes = () => drivers.map((driver) => data.takes[[driver, chosen.seed, chosen.vigilance].join()]);
+    const frames = () =>
+      takes().map((take, i) => {
+        const frame = take[at[i]];
+        return "map" in frame ? { ...frame, map: data.maps[frame.map] } : frame;
+      });
+    const tell = (kind, sent) => setTimeout(() => fire("msg:custom", { kind, number: ++number, frames: sent }));
+    const restart = () => {
+      at = drivers.map(() => 0);
+      tell("whole", frames());
+    };
+    // Who has arrived before the other one waits; after the last episode comes the first.
+    function step() {
+      const over = takes().map((take, i) => take[at[i]].over);
+      const moves = over.map((each) => !each || over.every(Boolean));
+      at = at.map((now, i) => (moves[i] ? (now + 1) % takes()[i].length : now));
+      tell("frames", frames().map((frame, i) => (moves[i] ? frame : null)));
+    }
+
+    const model = {
+      get: (name) => values[name],
+      set(name, value) {
+        values[name] = value;
+        play.setAttribute("aria-pressed", values.playing);
+        play.textContent = values.playing ? "pause" : "play";
+        fire(`change:${name}`);
+      },
+      on: (names, listener) => names.split(" ").forEach((name) => (listeners[name] ??= []).push(listener)),
+      off: () => {},
+      save_changes: () => {},
+      send({ kind, after }) {
+        if (kind === "hello") tell("whole", frames());
+        else if (kind === "step" || (kind === "next" && after === number)) step();
+      },
+    };
+    const button = (words, act) => {
+      const made = make("button", { type: "button" }, words);
+      made.addEventListener("click", act);
+      return made;
+    };
+    const play = button("play", () => model.set("playing", !values.playing));
+    const controls = make("div", { className: "arkaq-controls" });
+    const handle = (kind, look, start, go) => {
+      const stops = look.texts.map((_, i) => i);
+      if (stops.length < 2) return;
+      let tellIt = null;
+      const [row, show] = HANDLES[kind](look, stops, (stop) => (go(stop), tellIt(stop)));
+      (tellIt = show)(start);
+      controls.append(row);
+    };
+    controls.append(make("div", { className: "arkaq-buttons" }, play, button("step", step), button("start again", restart)));
+    drivers.forEach((driver, i) => {
+      const label = lanes === 1 ? "at the wheel" : ["left", "right"][i];
+      handle("menu", { label, texts: data.texts.driver }, driver, (stop) => ((drivers[i] = stop), restart()));
+    });
+    for (const name of ["seed", "vigilance"]) {
+      handle("slider", { label: name, texts: data.texts[name] }, 0, (stop) => ((chosen[name] = stop), restart()));
+    }
+    const speeds = SPEEDS.map((speed) => `${speed} ×`);
+    handle("slider", { label: "speed", texts: speeds }, chosen.speed, (stop) => model.set("speed", SPEEDS[stop]));
+    const canvas = make("div");
+    place.classList.add("arkaq-explorer");
+    place.replaceChildren(controls, canvas);
+    window.arkaqCanvas.renderLive({ model, el: canvas });
+  }
+
   function begin() {
     const near = new IntersectionObserver(
       (entries) => {
         for (const { isIntersecting, target } of entries) {
           if (!isIntersecting) continue;
           near.unobserve(target);
-          load(target.dataset).then((data) => bringToLife(target, data));
+          load(target.dataset).then((data) => (data.robot ? playRobot : bringToLife)(target, data));
         }
       },
       { rootMargin: "800px" },

@@ -1,14 +1,19 @@
 """Explorers without a kernel: what is packed is what the notebook shows."""
 
 import json
+import re
 
+import nbformat
 import numpy as np
 import pytest
 
 from arkaq_edu import widgets
 from arkaq_edu.site import living
-from arkaq_edu.site.chapters import explorer_of, masters
-from arkaq_edu.site.living import LIVING, Handle, Pack, handles, packed, settings, unpack
+from arkaq_edu.site.chapters import alive_in, masters
+from arkaq_edu.site.living import LIVING, Handle, Pack, handles, name_of, packed, settings
+from arkaq_edu.site.packing import rounded, unpack
+from arkaq_edu.site.robots import RECORDINGS, Recording, recorded
+from arkaq_edu.widgets.robot import CHANCE, Robot
 
 
 def shown(told, numbers, scene):
@@ -103,17 +108,32 @@ def test_pictures_are_packed_byte_by_byte():
 
 def test_numbers_are_rounded_by_less_than_a_pixel():
     x = np.random.default_rng(0).normal(size=1000).astype(np.float32) * 4000
-    np.testing.assert_allclose(living.rounded(x), x, rtol=2**-16)
-    assert np.isnan(living.rounded(np.float32([np.nan]))[0])
+    np.testing.assert_allclose(rounded(x), x, rtol=2**-16)
+    assert np.isnan(rounded(np.float32([np.nan]))[0])
 
 
 def test_every_explorer_of_the_chapters_lives():
-    import nbformat
+    names = {"vigilance_explorer", *map(name_of, LIVING), *RECORDINGS}
+    shows = re.compile(r"(\w+_explorer|control_panel|live_robot|vigilance_robot|race)\(")
+    found = set()
+    for master in masters():
+        for cell in nbformat.read(master, as_version=4).cells:
+            pictured = any(
+                "image/png" in output.get("data", {}) for output in cell.get("outputs", [])
+            )
+            if pictured and shows.match(cell.source.strip().rpartition("\n")[2]):
+                alive = alive_in(cell.source)
+                assert alive, cell.source
+                found |= {each.name for each in alive}
+    assert found <= names and set(map(name_of, LIVING)) <= found
 
-    called = {
-        call
-        for master in masters()
-        for cell in nbformat.read(master, as_version=4).cells
-        if cell.cell_type == "code" and cell.outputs and (call := explorer_of(cell.source))
-    }
-    assert called == set(LIVING)
+
+def test_a_recording_is_what_the_robot_does():
+    told, _ = unpack(recorded(Recording("goal", (CHANCE,), range(3, 4))))
+    robot = Robot("goal")
+    robot.set(driver=CHANCE, seed=3)
+    frames = told["takes"]["0,0,0"]
+    assert frames[0]["words"] == robot.frame()["words"]
+    assert [frame["words"] for frame in frames[1:5]] == [robot.step()["words"] for _ in range(4)]
+    assert sum(frame["over"] for frame in frames) == 2
+    assert told["maps"][frames[0]["map"]]
