@@ -119,6 +119,7 @@ class Senses(gymnasium.Wrapper):
     def reset(self, *, seed: int | None = None, options: Any = None) -> tuple[Any, Any]:
         """Start an episode."""
         self.rng = np.random.default_rng(seed)
+        self._begin()  # a robot that cannot see the goal looks around first
         observation, info = self.env.reset(seed=seed, options=options)
         self._begin()
         return self._sensed(observation), info

@@ -209,6 +209,13 @@ def test_the_goal_is_shot_at_and_the_ball_is_seen_to_roll():
     assert all(kick["outcome"].startswith(("a goal", "no goal")) for kick in kicks)
 
 
+def test_a_robot_that_must_look_around_for_the_goal_starts_all_the_same():
+    robot = Robot("goal")
+    for seed in (5, 6):  # at first it looks the other way
+        robot.set(seed=seed)
+        assert len(robot.frame()["motion"]) == 1
+
+
 def test_a_curve_stays_short_and_keeps_the_mean():
     curve = Curve()
     for value in range(4096):
