@@ -7,14 +7,15 @@
   // Each file of data calls this.
   window.arkaqLiving = (name, text) => waiting[name]?.(text);
 
+  const loads = {};
   function load({ explorer: name, src }) {
-    return new Promise((done, fail) => {
+    return (loads[name] ??= new Promise((done, fail) => {
       waiting[name] = done;
       const script = document.createElement("script");
       script.src = src;
       script.onerror = fail;
       document.head.append(script);
-    }).then(unpack);
+    }).then(unpack));
   }
 
   async function unpack(text) {
