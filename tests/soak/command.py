@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).parents[2]
+#: How much of the long runs: SOAK=0.05 makes a twentieth of the steps, kills and interrupts.
+SHARE = float(os.environ.get("SOAK", "1"))
 #: The command says when it is there: what happens before is Python's own.
 PROGRAM = """
 import os, sys

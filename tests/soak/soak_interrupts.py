@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from tests.soak.command import stopped, without_bars
+from tests.soak.command import SHARE, stopped, without_bars
 
 COMMANDS = {
     "train": ["train"],
@@ -18,7 +18,7 @@ COMMANDS = {
 @pytest.mark.parametrize("name", COMMANDS)
 def test_ctrl_c_at_random_moments(tmp_path, name, compiled):
     moments, wrong = random.Random(0), []
-    for trial in range(40):
+    for trial in range(max(3, round(40 * SHARE))):
         cache = {} if compiled else {"NUMBA_CACHE_DIR": str(tmp_path / f"cache-{trial}")}
         folder = tmp_path / f"trial-{trial}"
         folder.mkdir()

