@@ -10,7 +10,7 @@ import click
 from benchmarks.case import Case, Figure, Growth, compared, figured, grown
 from benchmarks.report import shown, write
 
-ROOMS = "kalman", "art", "mdp", "pomdp", "field"
+ROOMS = "kalman", "art", "mdp", "pomdp", "field", "reproduction", "widgets"
 
 
 @click.command(help=__doc__)
@@ -34,7 +34,7 @@ def main(rooms: tuple[str, ...], output: Path) -> None:
             for row in found:
                 ratio = "" if row.ratio != row.ratio else f"ratio {row.ratio:8.3g}"
                 click.echo(
-                    f"{row.room:7}{row.work[:52]:54}{row.who[:32]:34}{shown(row)[:44]:46}{ratio:16}"
+                    f"{row.room:13}{row.work[:52]:54}{row.who[:32]:34}{shown(row)[:44]:46}{ratio:16}"
                     f"{row.wanted} {row.met}"
                 )
             rows += found

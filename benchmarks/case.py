@@ -156,9 +156,15 @@ def figured(room: str, figure: Figure) -> Row:
     value = figure.measure()
     row = Row(room, figure.title, "ours", value, figure.unit, value, value, 1)
     if math.isfinite(figure.at_most):
-        row.wanted, row.met = f"at most {figure.at_most:.4g}", met(value <= figure.at_most)
+        row.wanted, row.met = (
+            f"at most {figure.at_most:.4g}",
+            judged(value, value <= figure.at_most),
+        )
     if math.isfinite(figure.at_least):
-        row.wanted, row.met = f"at least {figure.at_least:.4g}", met(value >= figure.at_least)
+        row.wanted, row.met = (
+            f"at least {figure.at_least:.4g}",
+            judged(value, value >= figure.at_least),
+        )
     return row
 
 
@@ -180,6 +186,10 @@ def grown(room: str, growth: Growth) -> tuple[Row, Curve]:
 
 def met(good: bool) -> str:
     return "met" if good else "missed"
+
+
+def judged(value: float, good: bool) -> str:
+    return "not measured" if math.isnan(value) else met(good)
 
 
 def installed(module: str) -> bool:

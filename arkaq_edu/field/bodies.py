@@ -13,7 +13,7 @@ _WALL_THICKNESS = 100.0
 
 
 class Physics:
-    """A space with all that is solid in it.
+    """A space with all that is solid in it. It is built once for a world, as that takes long.
 
     Attributes
     ----------
@@ -31,12 +31,26 @@ class Physics:
         self.robot, self.control = add_robot(self.space)
         self.ball = add_ball(self.space)
         self._last: tuple[Motion, Motion] | None = None
+        self._robot_put: Motion | None = None
+        self._robot_is_new = True
+
+    def renew(self) -> None:
+        """Build anew what moves: it remembers what it touched, and what pulled it how much."""
+        remove(self.space, self.ball)
+        if not self._robot_is_new:
+            remove(self.space, self.robot)
+            self.space.remove(self.control)
+            self.robot, self.control = add_robot(self.space)
+            self._robot_is_new = True
+        self.ball = add_ball(self.space)
+        self._last = None
 
     def put(self, robot: Motion, ball: Motion) -> None:
         """Let robot and ball move like this, unless they do already."""
         known, self._last = self._last, None
         if (robot, ball) == known:
             return
+        self._robot_put = robot
         for body, (place, angle, velocity, spin) in ((self.robot, robot), (self.ball, ball)):
             body.position, body.angle = (place.real, place.imag), angle
             body.velocity, body.angular_velocity = (velocity.real, velocity.imag), spin
@@ -47,6 +61,7 @@ class Physics:
             Motion(complex(*b.position), b.angle, complex(*b.velocity), b.angular_velocity)
             for b in (self.robot, self.ball)
         )
+        self._robot_is_new &= robot == self._robot_put  # else legs or a ball have pushed it
         self._last = robot, ball
         return robot, ball
 
@@ -54,6 +69,11 @@ class Physics:
         """Let the legs want a velocity (mm/s) and a turn (rad/s)."""
         self.control.velocity = velocity.real, velocity.imag
         self.control.angular_velocity = spin
+
+
+def remove(space: pymunk.Space, body: pymunk.Body) -> None:
+    """Remove a body, its shapes and its joints."""
+    space.remove(body, *body.shapes, *body.constraints)
 
 
 def add_walls(space: pymunk.Space) -> None:

@@ -128,10 +128,11 @@ class World:
         self.head = _checks.instance("head", Head() if head is None else head, Head)
         self.kick = _checks.instance("kick", Kick() if kick is None else kick, Kick)
         self.watch: Callable[[], None] | None = None
+        self._physics: Physics | None = None
         self.reset((-2500.0, 0.0, 0.0), (0.0, 0.0))
 
     def reset(self, robot: tuple[float, float, float], ball: tuple[float, float]) -> None:
-        """Build the world anew, so that nothing of an earlier episode remains in the physics.
+        """Begin anew; nothing of an earlier episode remains in the physics.
 
         Parameters
         ----------
@@ -151,7 +152,7 @@ class World:
         _check_on_carpet("ball", bx, by)
         self._robot = Motion(complex(rx, ry), heading, 0j, 0.0)
         self._ball = Motion(complex(bx, by), 0.0, 0j, 0.0)
-        self._physics: Physics | None = None
+        self._physics_is_new = False
         self._paw: pymunk.Body | None = None
         self.time = 0.0
         self._pan_from = self._pan_to = self._pan_since = 0.0
@@ -160,6 +161,9 @@ class World:
         """Hand robot and ball over to the physics, built when something first comes near."""
         if self._physics is None:
             self._physics = Physics()
+        elif not self._physics_is_new:
+            self._physics.renew()
+        self._physics_is_new = True
         self._physics.put(self._robot, self._ball)
         return self._physics
 
@@ -258,7 +262,7 @@ class World:
         x, y = _checks.array("ball", (x, y), (2,), allow_nan=True).tolist()
         _check_on_carpet("ball", x, y)
         self._ball = Motion(complex(x, y), 0.0, 0j, 0.0)
-        self._physics = None  # it still knows what the ball touched elsewhere
+        self._physics_is_new = False  # it still knows what the ball touched elsewhere
 
     def put_robot(self, x: float, y: float, heading: float) -> None:
         """Put the robot somewhere else, at rest (mm, mm, rad): somebody has pushed it.
@@ -285,9 +289,11 @@ class World:
         physics, self._paw = self._enter_physics(), build_paw(self.pose)
         shapes = tuple(self._paw.shapes)
         physics.space.add(self._paw, *shapes)
-        swing_paw(self._paw, physics.ball, partial(self._advance, physics), self._move_paw)
-        physics.space.remove(self._paw, *shapes)
-        self._paw = None
+        try:
+            swing_paw(self._paw, physics.ball, partial(self._advance, physics), self._move_paw)
+        finally:  # an interrupt leaves no paw behind
+            physics.space.remove(self._paw, *shapes)
+            self._paw = None
         self._robot, self._ball = physics.motions()
         swerve = self.kick.swerve * self.rng.uniform(-1.0, 1.0)
         self._ball, path = roll_out(self._ball, swerve, self._roll)

@@ -325,6 +325,23 @@ def test_reset_leaves_nothing_behind():
     assert np.array_equal(walk_and_shoot(used), walk_and_shoot(World(rng=3)))
 
 
+def test_a_used_world_kicks_and_walks_like_a_new_one_to_the_last_bit():
+    def play(world, trial):
+        """Push the ball against the wall, and kick it at the goal, so that it comes back."""
+        world.rng = np.random.default_rng(trial)
+        world.reset((2700.0, 1200.0, 0.3), (2880.0, 1250.0))
+        for left, right in ((150, 190), (190, 190), (-190, -120)):
+            world.cycle(left, right)
+        world.reset((2100.0, 30.0 * trial, 0.1), (2350.0, 30.0 * trial + 20.0))
+        path = world.swing_paw()
+        world.put_ball(2340.0, 30.0 * trial)
+        return world.pose, world.ball, path, world.swing_paw()
+
+    used = World(rng=0)
+    for trial in range(5):
+        assert play(used, trial) == play(World(rng=0), trial)
+
+
 def test_a_generator_or_its_seed_is_the_same():
     given = World(rng=np.random.default_rng(3))
     assert np.array_equal(walk_and_shoot(given), walk_and_shoot(World(rng=3)))
