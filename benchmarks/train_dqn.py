@@ -1,8 +1,8 @@
 """Stable-Baselines3's DQN on either task, for ``arkaq study benchmarks/dqn.toml --out DQN``.
 
-It sees what ARKAQ sees, the camera's picture, or the truth. Its result is stored in
-``data/studies/dqn.csv``. Not part of `make bench` or of any test: it needs
-``pip install torch stable-baselines3``, and about half a minute on one core for 8,000 steps.
+It sees what ARKAQ sees, the camera's picture, or the truth. Not part of `make bench` or of any
+test: it needs ``pip install torch stable-baselines3``, and about half a minute on one core for
+8,000 steps.
 """
 
 from __future__ import annotations

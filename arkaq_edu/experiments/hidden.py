@@ -51,13 +51,13 @@ class Remembered(gymnasium.Wrapper[Any, int, Any, int]):
 
     Examples
     --------
-    After two looks at the left, the belief says left, and the last look alone says so, too.
+    The ball has been seen on the right: the belief is nearly sure of it.
 
     >>> for remembers in ("belief", "last look"):
     ...     env = make_hidden("ball_side", remembers)
     ...     seen = env.reset(seed=1)[0], env.step(0)[0]
     ...     [look[:-1].round(2).tolist() for look in seen]
-    [[0.5, 0.5], [0.13, 0.87]]
+    [[0.5, 0.5], [0.13, 0.88]]
     [[0.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.0]]
     """
 
