@@ -496,7 +496,8 @@ class Robot:
             return part + self.outcome
         n, x = len(self._observation) - 1, self._estimator.kalman.x
         seen = f"seen at {_place(self._observation[:n])}" if self._observation[n] else "not seen"
-        words = f"{part}cycle {self.cycles}: {seen}, believed at {_place(x[:n])}"
+        looked = "" if part else f"{seen}, "  # on a line there is no room for all
+        words = f"{part}cycle {self.cycles}: {looked}believed at {_place(x[:n])}"
         if self.cell is not None:
             words += f"; state {self.cell}"
         return words if self.action is None else f"{words}: {self.task.actions[self.action]}"
