@@ -9,10 +9,15 @@ from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from sklearn.base import BaseEstimator, ClusterMixin
-from sklearn.utils.validation import check_array, check_is_fitted, validate_data
 
 from arkaq_edu._checks import affordable, array
+from arkaq_edu.art._scikit import (
+    BaseEstimator,
+    ClusterMixin,
+    check_array,
+    check_is_fitted,
+    validate_data,
+)
 
 Floats = NDArray[np.float64]
 Labels = NDArray[np.int64]

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from sklearn.utils.validation import check_is_fitted
 
 from arkaq_edu._checks import number
 from arkaq_edu._compiled import kernel
 from arkaq_edu.art._estimator import Categories, Floats, Labels
+from arkaq_edu.art._scikit import check_is_fitted
 
 if TYPE_CHECKING:
     import pandas as pd

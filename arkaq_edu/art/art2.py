@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from sklearn.utils.validation import check_is_fitted
 
 from arkaq_edu._checks import number, shown
 from arkaq_edu._compiled import kernel
 from arkaq_edu.art._estimator import Categories, Floats, Labels
+from arkaq_edu.art._scikit import check_is_fitted
 from arkaq_edu.art.vectors import change, dot, norm, unit
 
 if TYPE_CHECKING:
