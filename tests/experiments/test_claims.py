@@ -6,12 +6,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from arkaq_edu.arkaq import TrainingSettings
+from arkaq_edu.experiments import counts
 from arkaq_edu.experiments.claims import (
     CLAIMS,
     INSIDE,
     NO_NUMBER,
     OUTSIDE,
-    VERDICTS,
     WRONG,
     Claim,
     band,
@@ -20,6 +21,7 @@ from arkaq_edu.experiments.claims import (
     with_derived,
 )
 from arkaq_edu.experiments.runs import tidy
+from arkaq_edu.mdp.optimality import earnings
 
 
 def test_every_claim_has_a_quantity_of_its_own_a_place_and_a_sentence():
@@ -61,7 +63,7 @@ def test_what_the_thesis_prints_wrongly_is_told_from_what_differs_here():
     wrong = {name for name, given in verdict.items() if given == WRONG}
     assert wrong == {
         "upper minus middle chain, six terms as eq 2.1 prints",
-        "models without a horizon that choose alike",
+        "chains that the two models without a horizon choose",
         "a floor down: floor 3", "a floor down: floor 2", "a floor down: floor 1",
         "V(a1) - V(a2) at p(s1) = 0",
         "numbers that one update of Q reads, 20 states, 3 actions",
@@ -103,5 +105,23 @@ def test_the_best_number_of_states_is_that_of_the_agent_that_earns_most():
     assert made.loc["states with which most reward is earned"].to_list() == [0, 200.0]
 
 
-def test_verdicts_are_four():
-    assert len(set(VERDICTS)) == 4
+def test_a_claim_about_a_sign_says_in_how_many_seeds_it_is_so():
+    kept = "goals (%), near: the last 200 kicks minus the first 100"
+    rows = judge(tidy((seed, {kept: value}) for seed, value in enumerate([3.0, 5.0, -1.0])))
+    assert rows.why[0].endswith("It exploits what it has learned. It is so in 2 of 3 seeds.")
+    assert judge(tidy([(0, {kept: 3.0})])).why[0] == "It exploits what it has learned."
+
+
+def test_the_numbers_in_the_reasons_are_those_that_are_found():
+    why = {claim.quantity: claim.why for claim in CLAIMS}
+    found = counts.load_search()
+    eta, patterns, least = counts.nearest(found)
+    said = why["centers, vigilance 0.1"]
+    assert (eta, patterns) == (TrainingSettings().learning_rate, TrainingSettings().patterns)
+    stops = counts.needed(found, eta)
+    assert f"by {least:.0f} %" in said
+    assert f"({round(stops.min(), -3):,.0f} to {round(stops.max(), -3):,.0f} patterns)" in said
+    assert "39 × 10" in why["states with which most reward is earned"]
+    assert computed()["footsteps along times across"] == 390
+    assert "8, 10 and 0" in why["upper minus middle chain, six terms as eq 2.1 prints"]
+    assert earnings(6, 0.9)[0].tolist() == [8, 10, 0]
