@@ -1,5 +1,6 @@
 """Sphinx's settings for the site: `arkaq site`, `make site`."""
 
+import re
 from importlib.resources import files
 from pathlib import Path
 from shutil import copy
@@ -66,11 +67,34 @@ def setup(app):
     """Prepare docstrings, and bring along what the pages load."""
     app.connect("autodoc-process-docstring", plain_docstring, priority=1)
     app.connect("config-inited", _add_made)
+    app.connect("html-page-context", _lead_back)
     app.connect("build-finished", _copy_mathjax)
 
 
 def _add_made(app, config):
     config.html_static_path.append(str(Path(app.srcdir) / "_static"))  # what `arkaq site` made
+
+
+def _lead_back(app, page, template, context, tree):
+    """Lead from a source to what documents it: viewcode takes a module's name for its room's."""
+    if not page.startswith("_modules/"):
+        return
+    known = app.env.domains.python_domain.objects
+    module = page.removeprefix("_modules/").replace("/", ".")
+
+    def mended(link):
+        names = [link["name"], *(f"{module}.{part}" for part in _tails(link["name"]))]
+        name = next((name for name in names if name in known), None)
+        return link["start"] + name + link["end"] if name else ""
+
+    pattern = r'(?P<start><a class="viewcode-back" href="[^"#]*#)(?P<name>[^"]*)(?P<end>".*?</a>)'
+    context["body"] = re.sub(pattern, mended, context["body"])
+
+
+def _tails(name):
+    """Return what stands after each dot of a name, the longest first."""
+    parts = name.split(".")
+    return [".".join(parts[i:]) for i in range(1, len(parts))]
 
 
 def _copy_mathjax(app, error):

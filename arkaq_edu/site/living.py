@@ -388,18 +388,19 @@ def packed(living: Living) -> bytes:
 
 
 def _hidden(explorer: Explorer, made: Mapping[str, Handle]) -> dict[str, list[list[str]]]:
-    """Return, for each menu and each of its stops, the controls that are not shown."""
+    """Return, for each menu that hides controls and each of its stops, which ones it hides."""
     found: dict[str, list[list[str]]] = {}
     for name, handle in made.items():
         if handle.look["kind"] != "menu":
             continue
-        found[name] = []
+        menu = explorer.controls[name]
+        hidden = []
         for value in handle.values:
-            explorer.controls[name].value = value
-            found[name].append([
-                other for other, control in explorer.controls.items()
-                if control.layout.display == "none"
-            ])  # fmt: skip
+            menu.value = value
+            hidden.append({n for n, each in explorer.controls.items() if each.layout.display})
+        menu.value = handle.values[handle.start]
+        if any(own != hidden[0] for own in hidden):
+            found[name] = [sorted(own) for own in hidden]
     return found
 
 

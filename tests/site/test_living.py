@@ -112,6 +112,14 @@ def test_numbers_are_rounded_by_less_than_a_pixel():
     assert np.isnan(rounded(np.float32([np.nan]))[0])
 
 
+def test_a_menu_shows_the_sliders_of_its_method_only():
+    patterns = [[0.0, 0.0], [0.1, 0.0], [1.0, 1.0]]
+    explorer = widgets.vigilance_explorer(patterns)
+    made = handles(explorer, living.Living(widgets.vigilance_explorer))
+    assert living._hidden(explorer, made) == {"method": [["cosine"], ["vigilance"]]}
+    assert explorer.controls["method"].value == "Euclidean"
+
+
 def test_every_explorer_of_the_chapters_lives():
     names = {"vigilance_explorer", *map(name_of, LIVING), *RECORDINGS}
     shows = re.compile(r"(\w+_explorer|control_panel|live_robot|vigilance_robot|race)\(")
