@@ -58,7 +58,8 @@ def far_from_all() -> tuple[Run, Run]:
 
 def trained() -> float:
     """Return how long a training to walk to the ball takes, once its loops are compiled."""
-    approach.train(seed=0, vigilance=0.1, learning=TrainingSettings(**SHORT), progress=False)
+    learning = TrainingSettings(patterns=200, exploration=500, exploitation=500)
+    approach.train(seed=0, vigilance=0.1, learning=learning, progress=False)
     return timed(lambda: approach.train(seed=0, vigilance=0.1, progress=False))
 
 
