@@ -108,7 +108,7 @@ def problem(name: str) -> POMDP:
     ('first', 'second', 'goal', 'fourth')
     >>> problem("chess")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
-    ValueError: name must be one of ball_side, corridor, ..., got 'chess'
+    ValueError: name must be one of ball_side, cheese, corridor, ..., got 'chess'
     """
     files = {path.stem: path for path in sorted(course_folder().glob("data/pomdp/*.pomdp"))}
     if name not in files:
