@@ -182,6 +182,9 @@ CALLS = {
     "arkaq.Sensing": (arkaq.Sensing, SENSING),
     "arkaq.TrainingSettings": (arkaq.TrainingSettings, dataclasses.asdict(TrainingSettings())),
     "arkaq.UniformGrid": (arkaq.UniformGrid, {"cells": (4, 2)}),
+    "experiments.bands": (
+        lambda digits: experiments.bands(experiments.load_study("planned"), digits=digits),
+        {"digits": 1}),
     "experiments.count_centers": (experiments.count_centers, {
         "X": PATTERNS, "vigilances": (0.5, 0.3), "learning_rate": 0.5}),
     "experiments.learning_curve": (
@@ -305,6 +308,7 @@ TAKES_NO_NUMBERS = set(
         "experiments.agent_file",
         "experiments.goal_table",
         "experiments.load_kicks",
+        "experiments.load_study",
         "experiments.mean_nis",
         "experiments.read_plan",
         "experiments.read_study",

@@ -256,12 +256,17 @@ def bands(table: pd.DataFrame, *quantities: str, digits: int = 1) -> pd.DataFram
     *quantities : str
         The columns, by default all.
     digits : int
-        Digits behind the point.
+        Digits behind the point, 0 to 15.
 
     Returns
     -------
     DataFrame
         A row for each combination of settings, in the order of the study.
+
+    Raises
+    ------
+    ValueError
+        If `digits` is out of range.
 
     Examples
     --------
@@ -272,6 +277,7 @@ def bands(table: pd.DataFrame, *quantities: str, digits: int = 1) -> pd.DataFram
     0.1        91.0 ± 2.0
     0.2        91.0 ± 2.0
     """
+    digits = _checks.integer("digits", digits, 0, 15)
     settings = [*table.columns[: [*table.columns].index("seed")]]
     found = table.groupby([*settings, "quantity"], sort=False).value.agg(["mean", "sem"])
     words = [f"{mean:,.{digits}f} ± {2 * sem:,.{digits}f}" for mean, sem in found.to_numpy()]
