@@ -10,7 +10,7 @@ the last look solves the MDP of the cells. One that keeps a belief solves the PO
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -38,7 +38,7 @@ _SHAPE = len(DISTANCES) - 1, len(ORIENTATIONS) - 1
 OVER, UNSEEN, END = np.prod(_SHAPE) + np.array([0, 0, 1])
 
 
-@cache
+@lru_cache(maxsize=4)
 def on_cells(samples: int = 400, gamma: float = 0.97) -> POMDP:
     """Return the ball problem on cells.
 
@@ -156,12 +156,12 @@ class Belief:
         return self.last
 
 
-@cache
+@lru_cache(maxsize=1)
 def _by_cell() -> NDArray[np.intp]:
     return value_iteration(on_cells().mdp)[1]
 
 
-@cache
+@lru_cache(maxsize=1)
 def _by_belief() -> ValueFunction:
     return solve_point_based(on_cells(), 0.5, max_backups=1000).lower
 

@@ -13,7 +13,7 @@ Kalman estimate they hold
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from functools import lru_cache
 from typing import Any
 
 import gymnasium
@@ -175,7 +175,7 @@ def measure(seed: int, problem: str, remembers: str, episodes: int = 200) -> dic
     return {"states": float(agent.art.n_clusters_), "reward": reward, "regret": most - reward}
 
 
-@cache
+@lru_cache(maxsize=64)
 def best(name: str, seed: int, episodes: int = 200) -> float:
     """Return the mean reward of an episode by the best policy over beliefs (chapter 4).
 
@@ -192,6 +192,6 @@ def best(name: str, seed: int, episodes: int = 200) -> float:
     return earned(make_hidden(name, "belief"), choose, episodes, seed)
 
 
-@cache
+@lru_cache(maxsize=8)
 def _value(name: str) -> pomdp.ValueFunction:
     return pomdp.solve_point_based(pomdp.problem(name), 0.01).lower

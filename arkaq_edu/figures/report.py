@@ -306,7 +306,7 @@ def caption(number: str, draw: Draw) -> str:
     --------
     >>> from arkaq_edu.figures.gallery import FIGURES
     >>> caption("5.6", FIGURES["5.6"])
-    'The automaton of segmentation.'
+    'The automaton of the segmentation.'
     """
     # Such a line is: Draw figure 5.6, the automaton; see `plot`.
     line = (draw.__doc__ or "").strip().splitlines()[0]

@@ -110,14 +110,15 @@ def write_benchmarks(page: Path, pictures: Path) -> bool:
     report = course_folder() / "benchmarks" / "report" / "index.html"
     if not report.exists():
         return False
-    body = re.split(r"<body[^>]*>|</body>", report.read_text(encoding="utf-8"))
-    text = body[1] if len(body) > 1 else body[0].split("</style>")[-1]
-    text = re.sub(r"<h1>.*?</h1>", "", text, flags=re.DOTALL)
+    text = report.read_text(encoding="utf-8").split("</style>")[-1].replace("</html>", "")
+    text = re.sub(r"<h1>.*?</h1>", "", text)
     for drawn in sorted(report.parent.glob("*.svg")):
         (pictures / drawn.name).write_bytes(drawn.read_bytes())
         text = text.replace(f'"{drawn.name}"', f'"{PICTURES}/{drawn.name}"')
     text = re.sub(r"\n\s*\n", "\n", text)  # an empty line would end the HTML in Markdown
-    page.write_text(f'# Benchmarks\n\n<div class="arkaq-report">\n{text}\n</div>\n', "utf-8")
+    page.write_text(
+        f'# Benchmarks\n\n<div class="arkaq-report">\n{text.strip()}\n</div>\n', "utf-8"
+    )
     return True
 
 

@@ -12,6 +12,7 @@ from arkaq_edu.site.build import site
 from arkaq_edu.site.chapters import chapters, write_chapter
 from arkaq_edu.site.links import problems
 from arkaq_edu.site.reference import documented, plain_docstring
+from arkaq_edu.site.tables import write_benchmarks
 from arkaq_edu.trace import table
 
 SOLVED = "def f(x):\n    ### BEGIN SOLUTION\n    return 42\n    ### END SOLUTION"
@@ -118,6 +119,24 @@ def test_a_heavy_page_is_found(tmp_path):
     (tmp_path / "a.html").write_text('<script src="a.js"></script>')
     (tmp_path / "a.js").write_bytes(b" " * 8_000_001)
     assert problems(tmp_path) == ["a.html: weighs 8.0 MB with what it loads"]
+
+
+def test_the_report_of_the_benchmarks_is_a_page_if_there_is_one(tmp_path, monkeypatch):
+    monkeypatch.setattr("arkaq_edu.site.tables.course_folder", lambda: tmp_path)
+    assert not write_benchmarks(tmp_path / "page.md", tmp_path)
+    report = tmp_path / "benchmarks" / "report"
+    report.mkdir(parents=True)
+    (report / "growth.svg").write_text("<svg/>")
+    (report / "index.html").write_text(
+        "<html><style>b { }\n\n</style>\n<h1>Speed</h1>\n<table>\n\n</table>\n"
+        '<p>1 of 2 wanted figures are met.</p><img src="growth.svg"></html>'
+    )
+    (tmp_path / "pictures").mkdir()
+    assert write_benchmarks(tmp_path / "page.md", tmp_path / "pictures")
+    page = (tmp_path / "page.md").read_text()
+    assert page.startswith("# Benchmarks") and "1 of 2 wanted figures are met" in page
+    assert "style" not in page and "html" not in page and "\n\n" not in page.split("report")[1]
+    assert '"_static/pictures/growth.svg"' in page and (tmp_path / "pictures/growth.svg").exists()
 
 
 def test_a_folder_with_other_files_is_left_alone(tmp_path):
