@@ -16,7 +16,9 @@ def test_ctrl_c_in_the_first_moments(tmp_path, seconds):
 def test_ctrl_c_while_a_kernel_is_compiled(tmp_path):
     ended = stopped(["train"], tmp_path, 2.5, NUMBA_CACHE_DIR=str(tmp_path / "cache"))
     assert (ended.status, without_bars(ended.said)) == INTERRUPTED
-    assert [p.name for p in tmp_path.iterdir() if p.name.startswith(".")] == []
+    # The system lets a lock go with its process, so its empty file may stay.
+    left = [p.name for p in tmp_path.iterdir() if p.name.startswith(".") and p.suffix != ".lock"]
+    assert left == []
 
 
 PROGRAM = """
