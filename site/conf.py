@@ -79,7 +79,8 @@ def _lead_back(app, page, template, context, tree):
     """Lead from a source to what documents it: viewcode takes a module's name for its room's."""
     if not page.startswith("_modules/"):
         return
-    known = app.env.domains.python_domain.objects
+    objects = app.env.domains.python_domain.objects
+    known = {name for name, entry in objects.items() if entry.objtype != "module"}
     module = page.removeprefix("_modules/").replace("/", ".")
 
     def mended(link):

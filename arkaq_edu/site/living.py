@@ -124,7 +124,9 @@ LIVING: dict[str, Living] = {
     "vigilance_explorer()": Living(
         widgets.vigilance_explorer,
         (
-            {"method": ("Euclidean",), "cosine": START, "eta": START, "n": START},
+            {"method": ("Euclidean",), "cosine": START, "order": START, "eta": START, "n": START},
+            {"method": ("Euclidean",), "cosine": START, "eta": START, "n": START,
+             "vigilance": (0.05, 0.075, 0.1, 0.15, 0.2)},
             {"method": ("Euclidean",), "cosine": START, "order": START, "n": START,
              "vigilance": (0.05, 0.075, 0.1, 0.15, 0.2), "eta": (0.05, 0.2, 0.5, 1.0)},
             {"method": ("Euclidean",), "cosine": START, "order": START, "eta": START,
