@@ -23,6 +23,13 @@ from arkaq_edu.experiments import approach
 from arkaq_edu.experiments.policies import Choice
 from arkaq_edu.experiments.runs import FRESH_SEEDS
 from arkaq_edu.field import pitch
+from arkaq_edu.field.camera import FIELD_OF_VIEW
+from arkaq_edu.field.supervisor import (
+    CLOSE_ENOUGH,
+    CLOSE_REWARD,
+    STRAIGHT_ENOUGH,
+    STRAIGHT_REWARD,
+)
 from arkaq_edu.mdp import value_iteration
 from arkaq_edu.pomdp import POMDP, ValueFunction, solve_point_based
 
@@ -30,9 +37,7 @@ Floats = NDArray[np.float64]
 
 #: Borders of the cells: the distance of the ball (mm), from where it is reached, and its
 #: orientation (rad). A footstep to the side turns by the width of a cell.
-DISTANCES, ORIENTATIONS = np.arange(500.0, 4101.0, 150.0), np.arange(-0.75, 0.76, 0.1)
-#: Half the camera's field of view (rad).
-VIEW = 0.4965
+DISTANCES, ORIENTATIONS = np.arange(CLOSE_ENOUGH, 4101.0, 150.0), np.arange(-0.75, 0.76, 0.1)
 _SHAPE = len(DISTANCES) - 1, len(ORIENTATIONS) - 1
 #: The last state, after the ball was reached; the last two observations, no ball and the end.
 OVER, UNSEEN, END = np.prod(_SHAPE) + np.array([0, 0, 1])
@@ -70,15 +75,16 @@ def on_cells(samples: int = 400, gamma: float = 0.97) -> POMDP:
         error = rng.normal(size=(2, samples))
         far = distance + error[0] * (look_error[0] + known.range_noise * distance**2)
         aside = orientation + error[1] * look_error[1]
-        seen = np.where(abs(orientation) < VIEW, cell(far, aside), UNSEEN)
+        seen = np.where(abs(orientation) < FIELD_OF_VIEW / 2, cell(far, aside), UNSEEN)
         np.add.at(O[s], seen, 1 / samples)
         for a in range(3):
             d, o = _walk(distance, orientation, a)
             d, o = np.array([d, o]) + rng.normal(size=(2, samples)) * walk_error[:, None]
             reached = d < DISTANCES[0]
             np.add.at(T[a, s], np.where(reached, OVER, cell(d, o)), 1 / samples)
-            R[s, a] = np.mean(reached * (100.0 + 50.0 * (abs(o) <= 0.05)))
-    start = np.append(np.tile(abs(ORIENTATIONS[:-1] + 0.05) < VIEW, _SHAPE[0]), False)
+            straight = abs(o) <= STRAIGHT_ENOUGH
+            R[s, a] = np.mean(reached * (CLOSE_REWARD + STRAIGHT_REWARD * straight))
+    start = np.append(np.tile(abs(ORIENTATIONS[:-1] + 0.05) < FIELD_OF_VIEW / 2, _SHAPE[0]), False)
     return POMDP(T, np.tile(O, (3, 1, 1)), R, gamma, start / start.sum())
 
 

@@ -275,7 +275,7 @@ class World:
         x, y, heading = _checks.array("robot", (x, y, heading), (3,)).tolist()
         _check_on_carpet("robot", x, y)
         self._robot = Motion(complex(x, y), heading, 0j, 0.0)
-        self._physics = None
+        self._physics_is_new = False
 
     def swing_paw(self) -> list[tuple[float, float]]:
         """Kick, and let the ball roll until it rests.

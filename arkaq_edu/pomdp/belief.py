@@ -13,8 +13,6 @@ from arkaq_edu.pomdp.model import POMDP
 
 Floats = NDArray[np.float64]
 
-_FLOAT = np.dtype(np.float64)
-
 # A belief whose sum is this close to 1 is taken as it is.
 NEARLY = 1e-12
 
@@ -380,7 +378,7 @@ def _column(O: Any, z: int) -> Floats:  # noqa: E741
 
 
 def _belief(pomdp: POMDP, b: ArrayLike) -> Floats:
-    if type(b) is np.ndarray and b.dtype is _FLOAT and b.shape == pomdp.start.shape:
+    if type(b) is np.ndarray and b.dtype == np.float64 and b.shape == pomdp.start.shape:
         p = b.tolist()
         if abs(sum(p) - 1) < NEARLY and min(p) >= 0:
             return b  # as an update returned it: the gate would take longer than the next update

@@ -544,13 +544,13 @@ function renderLive({ model, el }) {
     const seconds = Math.min((now - last) / 1000, 0.25);
     last = now;
     const moving = t() < ends();
-    advance(seconds);
+    if (visible) advance(seconds);
     if (moving && t() >= ends()) stale = true; // it has arrived, and looks
     paint();
     if (visible && going()) frame = requestAnimationFrame(tick);
   }
   function wake() {
-    if (frame || !visible || !lanes.length) return;
+    if (frame || !lanes.length) return; // out of view it is painted, but does not go
     last = performance.now();
     frame = requestAnimationFrame(tick);
   }

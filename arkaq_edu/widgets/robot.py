@@ -10,7 +10,7 @@ import base64
 import copy
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache, partial
 from itertools import count
 from threading import RLock
@@ -29,7 +29,6 @@ from arkaq_edu.arkaq import (
     Arkaq,
     Automaton,
     Estimator,
-    Sensing,
 )
 from arkaq_edu.arkaq.training import FINISHED
 from arkaq_edu.art.geometry import voronoi_cells
@@ -42,6 +41,7 @@ from arkaq_edu.field.supervisor import MAX_BALL_DISTANCE
 from arkaq_edu.field.view import EXTENT
 from arkaq_edu.figures.drawing import style
 from arkaq_edu.widgets.scene import Cells, Layer, Line, Panel, Picture, Points, Scene
+from arkaq_edu.widgets.senses import Senses, short
 
 #: Who can be at the wheel, before one's own agents.
 TRAINED, LEARNING, PLANNER, CHANCE = DRIVERS = (
@@ -50,7 +50,6 @@ TRAINED, LEARNING, PLANNER, CHANCE = DRIVERS = (
 
 _CIRCLE = np.linspace(0, 2 * np.pi, 33)
 _MOST_BLOCKS = 100  # of the curve
-_FILM = 1 / 30  # s between two rows of a motion, where more than the ends of a cycle is to be seen
 
 
 @dataclass(frozen=True)
@@ -84,87 +83,6 @@ TASKS = {
         goal.planner, goal.at_random,
     ),
 }  # fmt: skip
-
-
-class Senses(gymnasium.Wrapper):
-    """A task with worse senses, which records how robot and ball moved in the last step.
-
-    Attributes
-    ----------
-    noise : float
-        How far off a sighting is, along and across (mm, one standard deviation).
-    dropout : float
-        How likely a sighting is lost.
-    motion : list of list
-        Rows of time (s, from the start of the step), x, y, heading and pan of the robot, x and y
-        of the ball and, while it kicks, x and y of the paw (mm, rad).
-    """
-
-    def __init__(self, env: gymnasium.Env) -> None:
-        super().__init__(env)
-        self.noise = self.dropout = 0.0
-        self.motion: list[list[float]] = []
-        task: Any = env.unwrapped
-        self.world, self.camera = task.world, task.camera
-        self._range = task.start.distance if hasattr(task, "start") else None
-
-    def follow(self, estimator: Estimator) -> None:
-        """Tell this estimator how noisy the senses are: its filter's R grows by as much."""
-        self._estimator, self._sensing = estimator, estimator.sensing
-
-    def film(self, filming: bool) -> None:
-        """Record also what lies between the ends of a step, or not: it takes time."""
-        self.world.watch = self._watch if filming else None
-
-    def reset(self, *, seed: int | None = None, options: Any = None) -> tuple[Any, Any]:
-        """Start an episode."""
-        self.rng = np.random.default_rng(seed)
-        self._begin()  # a robot that cannot see the goal looks around first
-        observation, info = self.env.reset(seed=seed, options=options)
-        self._begin()
-        return self._sensed(observation), info
-
-    def step(self, action: int) -> tuple[Any, Any, bool, bool, Any]:
-        """Act for one cycle."""
-        self._begin()
-        observation, *rest = self.env.step(action)
-        self._record()
-        return self._sensed(observation), *rest  # type: ignore[return-value]
-
-    def _begin(self) -> None:
-        self._start, self.motion = self.world.time, []
-        self._record()
-
-    def row(self, t: float) -> list[float]:
-        """Return where everything is, as a row of `motion`."""
-        world = self.world
-        x, y, heading = world.pose
-        places = *_short((x, y)), *_short((heading, world.pan), 4), *_short(world.ball)
-        return [round(t, 3), *places, *_short(world.paw or ())]
-
-    def _record(self) -> None:
-        self.motion.append(self.row(self.world.time - self._start))
-
-    def _watch(self) -> None:
-        if self.world.time - self._start >= self.motion[-1][0] + _FILM:
-            self._record()
-
-    def _sensed(self, observation: NDArray[np.floating]) -> NDArray[np.floating]:
-        if not observation[-1] or self.rng.random() < self.dropout:
-            return np.zeros_like(observation)
-        if self.noise:
-            spread = np.full(len(observation) - 1, float(self.noise))
-            spread[-1] /= self._range or max(observation[0], 1.0)  # what lies aside, as an angle
-            observation = observation.copy()
-            observation[:-1] += spread * self.rng.standard_normal(len(spread))
-            self._tell(replace(self._sensing, R=self._sensing.R + np.diag(spread**2)))
-        elif self._estimator.sensing is not self._sensing:
-            self._tell(self._sensing)
-        return observation
-
-    def _tell(self, sensing: Sensing) -> None:
-        self._estimator.sensing = sensing
-        self._estimator.kalman.R = sensing.R
 
 
 class Curve:
@@ -569,9 +487,9 @@ class Robot:
         """Return where a sighting shows in the picture: a ball's ring, or a goal's middle."""
         camera, world = self.senses.camera, self.senses.world
         if self.name == "goal":
-            return _short(camera.pixel(world, 3000.0, float(z[0]), camera.height))
+            return short(camera.pixel(world, 3000.0, float(z[0]), camera.height))
         col, row = camera.pixel(world, float(z[0]), float(z[1]), pitch.BALL_RADIUS)
-        return _short((col, row, abs(FOCAL_LENGTH * pitch.BALL_RADIUS / z[0]) + 3))
+        return short((col, row, abs(FOCAL_LENGTH * pitch.BALL_RADIUS / z[0]) + 3))
 
     def _centers(self) -> tuple[NDArray[np.float64], list[int]]:
         """Return the centers of the map's cells, and their categories."""
@@ -589,7 +507,7 @@ class Robot:
     def _values(self) -> list[float] | None:
         if self.agent.q is None or self.cell is None:
             return None
-        return _short(self.agent.q.Q[self.cell], 2)
+        return short(self.agent.q.Q[self.cell], 2)
 
     def _best(self) -> list[int]:
         """Return the best action in each cell of the map."""
@@ -609,7 +527,7 @@ class Robot:
             for k, i in enumerate(order):
                 left, right = borders[k : k + 2]
                 strips[i] = [left, 0, right, 0, right, 1, left, 1]
-            return [_short(strip, 4) for strip in strips]
+            return [short(strip, 4) for strip in strips]
         polygons = voronoi_cells(centers)[0]
         corners = _in_view(self.agent.sensing.unscale(np.concatenate(polygons)))
         ends = np.cumsum([len(polygon) for polygon in polygons])[:-1]
@@ -773,7 +691,7 @@ def _ghost(
 
 def _on_map(z: NDArray[np.floating]) -> list[float]:
     """Return where a measurement lies on the map."""
-    return _short((z[0], 0.5) if len(z) == 1 else (z[1], z[0]), 4)
+    return short((z[0], 0.5) if len(z) == 1 else (z[1], z[0]), 4)
 
 
 def _on_carpet(x: float, y: float, margin: float) -> tuple[float, float]:
@@ -794,7 +712,3 @@ def _runs(colors: NDArray[np.uint8]) -> str:
     return base64.b64encode(
         np.column_stack([flat[starts], lengths]).astype("<u2").tobytes()
     ).decode()
-
-
-def _short(values: Any, digits: int = 1) -> list[float]:
-    return [round(float(value), digits) for value in values]

@@ -14,23 +14,11 @@ import pandas as pd
 
 from arkaq_edu import widgets
 from benchmarks.widgets import MEASURED
-from tests.browser.reading import assert_sound
+from tests.browser.reading import CLOCK, assert_sound
 
 WANTED = {"median": 100, "p90": 150}  # ms
 KEYS = ["Home", *["ArrowRight"] * 14, "End", *["ArrowLeft"] * 7, "PageDown", "PageUp"]
 
-# The clock starts at the key and stops in the frame that shows what the canvas was given.
-CLOCK = """(canvas) => {
-    window.times = [];
-    let pressed = null;
-    document.addEventListener("keydown", () => { pressed = performance.now(); }, true);
-    new MutationObserver(() => {
-        if (pressed === null) return;
-        const since = pressed;
-        pressed = null;
-        requestAnimationFrame(() => setTimeout(() => times.push(performance.now() - since)));
-    }).observe(canvas, { attributes: true, attributeFilter: ["aria-label"] });
-}"""
 SHOWN = "(n) => times.length > n"
 
 

@@ -18,7 +18,7 @@ from tests.browser.test_live import ASK, CODE, RUN
 
 MINUTES = float(os.environ.get("MINUTES", "3"))
 GROWTH = 8  # MB that the page, or the kernel, may grow by in the second half of that time
-CANVAS = ".arkaq-explorer:has(.arkaq-help) .arkaq-canvas canvas"
+CANVAS = ".arkaq-canvas:has(.arkaq-help) canvas"
 MEMORY = "import gc, psutil; gc.collect(); print(psutil.Process().memory_info().rss)"
 CHAPTERS = (
     "08_robot_and_field", "09_arkaq_learning", "10_ball_approaching", "11_scoring_goals",

@@ -7,6 +7,19 @@ OUTPUTS = """() => {
     const { model } = window.jupyterapp.shell.currentWidget.content;
     return Array.from(model.cells).flatMap((cell) => cell.sharedModel.getOutputs?.() ?? []);
 }"""
+# The clock of an element starts at a key and stops in the frame that shows what a canvas in it was
+# given: then its label has changed.
+CLOCK = """(element) => {
+    window.times = [];
+    let pressed = null;
+    document.addEventListener("keydown", () => { pressed = performance.now(); }, true);
+    new MutationObserver(() => {
+        if (pressed === null) return;
+        const since = pressed;
+        pressed = null;
+        requestAnimationFrame(() => setTimeout(() => times.push(performance.now() - since)));
+    }).observe(element, { subtree: true, attributes: true, attributeFilter: ["aria-label"] });
+}"""
 
 
 def errors(page):

@@ -14,23 +14,12 @@ from pathlib import Path
 import pytest
 
 from arkaq_edu.site.links import problems
+from tests.browser.reading import CLOCK
 
 SITE = Path(os.environ.get("SITE", Path(__file__).parents[2] / "build" / "site")).resolve()
 PAGES = sorted(SITE.rglob("*.html"))
 WANTED = 50  # ms from a key to the picture
 
-# The clock starts at the key and stops in the frame after the canvas has been painted.
-CLOCK = """() => {
-    window.times = [];
-    let pressed = null;
-    document.addEventListener("keydown", () => { pressed = performance.now(); }, true);
-    new MutationObserver(() => {
-        if (pressed === null) return;
-        const since = pressed;
-        pressed = null;
-        requestAnimationFrame(() => setTimeout(() => times.push(performance.now() - since)));
-    }).observe(document.body, { subtree: true, attributes: true, attributeFilter: ["aria-label"] });
-}"""
 PICTURE = "canvas => canvas.toDataURL()"
 DONE = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 CLIPPED = "document.documentElement.scrollWidth > document.documentElement.clientWidth"
@@ -90,7 +79,7 @@ def test_a_page_opens_without_error_or_request(open_page, path, width):
 )
 def test_every_explorer_follows_the_keyboard(open_page, path, capsys):
     page = open_page(path, 1360)
-    page.evaluate(CLOCK)
+    page.locator("body").evaluate(CLOCK)
     times = []
     for place in page.locator(".arkaq-living").all():
         place.scroll_into_view_if_needed()

@@ -46,3 +46,62 @@ def test_bands_are_two_standard_errors_to_each_side():
     table = pd.DataFrame(rows, columns=["part", "seed", "quantity", "value"])
     wanted = f"3.00 ± {2 * (7 / 3) ** 0.5:.2f}"  # the variance of three values is 7
     assert bands(table, "x", digits=2).loc["a", "x"] == wanted
+
+
+def gains(name, quantity, usual):
+    """How many standard errors each setting gains over the usual one, in pairs of one seed."""
+    table = pd.concat([load_study(each) for each in name.split(" + ")])
+    wide = table[table.quantity == quantity].pivot(
+        index="seed", columns=table.columns[0], values="value"
+    )
+    change = wide.drop(columns=usual).sub(wide[usual], axis=0)
+    return (change.mean() / change.sem()).to_dict()
+
+
+SEGMENTERS = "segmenters_{0} + tiles_{0}".format
+BETTER, WORSE, EQUAL = (lambda z: z >= 2), (lambda z: z <= -2), (lambda z: abs(z) < 2)
+SAID = [
+    # study, quantity, the usual setting, what chapter 12 says of the others
+    ("vigilance_goal", "success", 0.1, {0.3: EQUAL, 0.15: EQUAL, 0.06: EQUAL, 0.03: WORSE}),
+    ("vigilance_goal", "learning_time", 0.1, {0.03: BETTER}),
+    ("vigilance_approach", "success", 0.3, {0.2: WORSE, 0.1: WORSE, 0.05: WORSE}),
+    ("vigilance_approach", "bonus", 0.1, {0.05: WORSE}),
+    ("sensing_approach", "reward", "consistent",
+     {"unfiltered": EQUAL, "thesis": WORSE, "uncontrolled": WORSE}),
+    ("sensing_approach", "reward", "unfiltered", {"thesis": WORSE}),
+    ("learners_goal", "success", "QLearning",
+     {"Sarsa": BETTER, "ExpectedSarsa": BETTER, "AveragedQ": EQUAL}),
+    (SEGMENTERS("goal"), "success", "Euclidean ART",
+     {"ART 2-A": EQUAL, "tile coding": EQUAL, "uniform grid": WORSE, "ART2": WORSE}),
+    (SEGMENTERS("goal"), "learning_time", "Euclidean ART",
+     {"ART 2-A": WORSE, "tile coding": WORSE}),
+    (SEGMENTERS("approach"), "bonus", "Euclidean ART",
+     {"ART 2-A": EQUAL, "ART2": EQUAL, "uniform grid": EQUAL, "tile coding": WORSE}),
+    ("exploring_goal", "success", "QLearning", {"AtRandom": EQUAL, "EpsilonGreedy": EQUAL}),
+    ("exploring_approach", "reward", "QLearning", {"AtRandom": EQUAL, "EpsilonGreedy": EQUAL}),
+    ("holding_approach", "reward", "QLearning", {"AsPrinted": EQUAL}),
+    ("holding_approach", "learning_time", "QLearning", {"AsPrinted": BETTER}),  # later
+    ("learners_approach", "reward", "QLearning",
+     {"Sarsa": EQUAL, "AveragedQ": EQUAL, "ExpectedSarsa": WORSE}),
+    ("planned", "reward", "last look", {"belief": BETTER}),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "quantity", "usual", "said"), SAID)
+def test_chapter_12_says_what_the_tables_show(name, quantity, usual, said):
+    found = gains(name, quantity, usual)
+    assert [other for other, agrees in said.items() if not agrees(found[other])] == []
+
+
+def test_even_the_worst_robots_of_sarsa_beat_the_mean_of_q_learning():
+    table = load_study("learners_goal").query("quantity == 'success'")
+    scores = table.pivot(index="seed", columns="learner", values="value")
+    assert scores.Sarsa.nsmallest(5).mean() > scores.QLearning.mean()
+
+
+def test_each_small_pomdp_is_as_hard_as_chapter_12_says():
+    table = load_study("hidden").query("quantity == 'regret'")
+    regret = table.groupby(["problem", "remembers"]).value.mean().unstack()
+    assert regret.loc["ball_side"].max() < 5  # the last look is enough
+    assert regret.loc["cheese", "last look"] > 10 * regret.loc["cheese", "two looks"]
+    assert regret.loc["tiger", ["last look", "two looks"]].min() > 5 * regret.belief["tiger"]

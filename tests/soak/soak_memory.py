@@ -13,6 +13,7 @@ import pytest
 from arkaq_edu import art, kalman, mdp, widgets
 from arkaq_edu._paths import data_file
 from arkaq_edu.arkaq import Arkaq
+from arkaq_edu.widgets.explorer import START_AGAIN, is_offered
 from tests.soak.command import SHARE
 
 MEGABYTES = 12  # what the allocator may keep
@@ -142,12 +143,20 @@ def test_a_thousand_saves(tmp_path):
     assert path.read_bytes() == whole and [p.name for p in tmp_path.iterdir()] == [path.name]
 
 
+def buttons(widget):
+    if isinstance(widget, ipywidgets.Button):
+        return [widget]
+    return [found for part in getattr(widget, "children", ()) for found in buttons(part)]
+
+
 def move(control, rng, number):
     """Do what a hand does to a control."""
     if hasattr(control, "press"):
-        names = [*control.names, "start again"] if number % 30 else ["start again"]
-        control.press(names[rng.integers(len(names))])
-    elif isinstance(control, ipywidgets.Checkbox):
+        offered = [each for each in buttons(control) if is_offered(each)]
+        if number % 30 == 0:
+            offered = [each for each in offered if each.description == START_AGAIN]
+        offered[rng.integers(len(offered))].click()
+    elif isinstance(control, ipywidgets.Checkbox | ipywidgets.ToggleButton):
         control.value = not control.value
     elif hasattr(control, "options"):
         control.index = int(rng.integers(len(control.options)))
@@ -159,9 +168,9 @@ def move(control, rng, number):
             move(part, rng, number)
 
 
-@pytest.mark.parametrize("name", [name for name in widgets.__all__ if name.islower()])
+@pytest.mark.parametrize("name", widgets.EXPLORERS)
 def test_twenty_thousand_callbacks(name):
-    explorer, rng, turn = getattr(widgets, name)(), np.random.default_rng(0), count()
+    explorer, rng, turn = widgets.EXPLORERS[name](), np.random.default_rng(0), count()
     controls = list(explorer.controls.values())
     alive = []
 
