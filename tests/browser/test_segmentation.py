@@ -1,10 +1,11 @@
-"""Notebook 07 in a real browser: it runs, and the vigilance explorer follows the keyboard."""
+"""Notebook 07 in a real browser: it reads well, it runs, its explorer follows the keyboard."""
 
 import re
 
 from playwright.sync_api import expect
 
-from tests.browser.reading import BROKEN, OUTPUTS, assert_sound, errors, picture, slider_of
+from tests.browser.conftest import RUN_ALL
+from tests.browser.reading import OUTPUTS, assert_sound, errors, picture, slider_of
 
 NOTEBOOK = "07_state_segmentation.ipynb"
 CELL = "from arkaq_edu.widgets import vigilance_explorer; vigilance_explorer()"
@@ -17,8 +18,22 @@ def fact(canvas):
     return int(count.replace(",", "")), float(vigilance)
 
 
-def test_runs_and_follows_the_keyboard(open_notebook):
-    page = open_notebook(NOTEBOOK)
+def assert_reads_well(page):
+    """Fail where the page, before anything is run, lacks a stored picture or shows a widget."""
+    cell = page.locator(".jp-CodeCell", has_text="vigilance_explorer()")
+    stored = cell.locator(".jp-OutputArea img")
+    expect(stored).to_be_visible()
+    assert stored.evaluate("(image) => image.naturalWidth") > 1000
+    pictures = [o for o in page.evaluate(OUTPUTS) if "image/png" in o.get("data", {})]
+    assert page.locator(".jp-OutputArea img").count() == len(pictures)
+    assert page.get_by_role("slider").count() == 0
+    assert_sound(page)
+
+
+def test_reads_well_then_runs_and_follows_the_keyboard(open_notebook):
+    page = open_notebook(NOTEBOOK, run=False)
+    assert_reads_well(page)
+    page.evaluate(RUN_ALL)
     assert errors(page) == []
 
     canvas = page.get_by_role("img", name=FACT)
@@ -74,15 +89,3 @@ def test_fits_the_window_and_the_screen(open_cells):
     narrow = canvas.bounding_box()
     assert narrow["width"] < wide["width"]
     assert canvas.evaluate("(canvas) => canvas.width") == 2 * narrow["width"]
-
-
-def test_reads_well_before_anything_is_run(open_notebook):
-    page = open_notebook(NOTEBOOK, run=False)
-    cell = page.locator(".jp-CodeCell", has_text="vigilance_explorer()")
-    stored = cell.locator(".jp-OutputArea img")
-    expect(stored).to_be_visible()
-    assert stored.evaluate("(image) => image.naturalWidth") > 1000
-    pictures = [o for o in page.evaluate(OUTPUTS) if "image/png" in o.get("data", {})]
-    assert page.locator(".jp-OutputArea img").count() == len(pictures)
-    assert page.get_by_role("slider").count() == 0
-    assert BROKEN.search(page.inner_text("body")) is None
