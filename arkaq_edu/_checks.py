@@ -18,6 +18,8 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from arkaq_edu._compiled import kernel
+
 #: Larger magnitudes are refused, so that no method has to guard its products against overflow.
 LARGEST = 1e100
 
@@ -246,8 +248,7 @@ def covariance(name: str, value: ArrayLike, n: int, *, stack: bool = False) -> N
     x = array(name, value, (None, n, n) if stack else (n, n))
     if x.size == 0:
         return x
-    variances = x.diagonal(0, -2, -1)
-    if np.count_nonzero(x) == np.count_nonzero(variances > 0):
+    if _is_diagonal(x.reshape(-1, n, n)):
         return x  # a diagonal shows its eigenvalues
     transposed = x.swapaxes(-2, -1)
     scale = np.maximum(np.abs(x).max(axis=(-2, -1)), np.finfo(float).tiny)
@@ -270,6 +271,15 @@ def covariance(name: str, value: ArrayLike, n: int, *, stack: bool = False) -> N
             f"{lowest[row]:g}{f' in row {row}' if stack else ''}"
         )
     return x
+
+
+@kernel
+def _is_diagonal(matrices):
+    """Tell whether all the matrices are diagonal, with nothing negative on the diagonal."""
+    diagonal = True
+    for i, j, k in np.ndindex(matrices.shape):
+        diagonal = diagonal and (matrices[i, j, k] == 0 or (j == k and matrices[i, j, k] > 0))
+    return diagonal
 
 
 def distribution(

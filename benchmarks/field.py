@@ -50,7 +50,7 @@ def far_from_all() -> tuple[Run, Run]:
             world.cycle(-100.0, -100.0)
 
     def by_physics() -> None:
-        with mock.patch.object(arcs, "out_of_reach", lambda *_: False):
+        with mock.patch.object(arcs, "free_cycle", lambda robot, ball, *_: (robot, ball, False)):
             walk()
 
     return walk, by_physics

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from arkaq_edu import _checks
+from arkaq_edu._compiled import kernel
 from arkaq_edu.kalman import KalmanFilter, constant_velocity
 
 _FARTHEST = 1e20  # mm
@@ -156,10 +157,8 @@ class Sensing:
             If the distance is beyond 1e20 in magnitude: its fourth power would overflow.
         """
         z = _checks.array("z", z, (len(self.low),))
-        _checks.number("z[0]", float(z[0]), -_FARTHEST, _FARTHEST)
-        R = np.array(self.R, dtype=np.float64)
-        R[0, 0] += (self.range_noise * z[0] ** 2) ** 2
-        return R
+        _checks.number("z[0]", z.item(0), -_FARTHEST, _FARTHEST)
+        return _noise(self.R, self.range_noise, z)
 
     def scale(self, z: ArrayLike) -> NDArray[np.float64]:
         """Return measurements as patterns in [-1, 1].
@@ -182,7 +181,7 @@ class Sensing:
         array([ 1. , -0.5])
         """
         z = _checks.array("z", z, (*(None,) * (_checks.n_axes("z", z) - 1), len(self.low)))
-        return scaled(z, *self.interval())
+        return _scaled(z, *self.interval())
 
     def unscale(self, patterns: ArrayLike) -> NDArray[np.float64]:
         """Return patterns as measurements: the inverse of `scale` inside the interval."""
@@ -208,11 +207,20 @@ class Sensing:
         return cls(**_checks.instance("settings", settings, dict))
 
 
-def scaled(
-    z: NDArray[np.float64], middle: NDArray[np.float64], half: NDArray[np.float64]
-) -> NDArray[np.float64]:
+@kernel
+def _noise(R, range_noise, z):
+    """Return R for a sighting z: its distance z[0] is read from the size of a blob."""
+    R = R.copy()
+    R[0, 0] += (range_noise * z[0] ** 2) ** 2
+    return R
+
+
+def _scaled(z, middle, half):
     """Return measurements as patterns in [-1, 1], clipped to the interval `middle` +- `half`."""
     return np.minimum(np.maximum((z - middle) / half, -1.0), 1.0)
+
+
+_scaled_one = kernel(_scaled)
 
 
 #: The settings that `Arkaq` knows by name.
@@ -277,11 +285,12 @@ class Estimator:
         """
         m = len(self.sensing.low)
         look = _checks.array("observation", observation, (m + 1,))
-        R = self.sensing.noise(look[:m]) if look[m] and self.sensing.range_noise else None
+        z, seen = look[:m], look.item(m) != 0
+        R = self.sensing.noise(z) if seen and self.sensing.range_noise else None
         if action is not None:
             most = None if self._inputs is None else len(self._inputs) - 1
             action = _checks.integer("action", action, 0, most)
             self.kalman.predict(None if self._inputs is None else self._inputs[action])
-        if look[m]:
-            self.kalman.update(look[:m], R)
-        return scaled(self.kalman.x[:m], *self._interval)
+        if seen:
+            self.kalman.update(z, R)
+        return _scaled_one(self.kalman.x[:m], *self._interval)

@@ -173,6 +173,14 @@ def out_of_reach(robot, ball, fastest, seconds):
 
 
 @kernel
+def free_cycle(robot, ball, velocity, spin):
+    """Return the motions of robot and ball after a cycle, and whether nothing was in reach."""
+    if not out_of_reach(robot, ball, abs(velocity), CYCLE):
+        return robot, ball, False
+    return walk(robot, velocity, spin), roll(ball, SUBSTEPS), True
+
+
+@kernel
 def swerve(ball, push, dt):
     """Return the motion of a ball after one step of dt (s) under a push (mm/s^2)."""
     v = ball.velocity + push * dt

@@ -76,7 +76,7 @@ def random_place(
         return distance, rng.uniform(-half, half)
     while True:  # until the place lies within [near, far]
         z = rng.uniform(0.0, far)
-        x = z * math.tan(half) * rng.uniform(0.0, 1.0) * rng.choice((-1.0, 1.0))
+        x = z * math.tan(half) * rng.uniform(0.0, 1.0) * (-1.0, 1.0)[rng.integers(2)]
         distance = math.hypot(z, x)
         if near <= distance <= far:
             return distance, math.atan2(x, z)

@@ -197,9 +197,8 @@ class World:
 
     def _move(self, velocity: complex, spin: float) -> None:
         """Move the body for one cycle at a velocity in its own frame (mm/s, rad/s)."""
-        if arcs.out_of_reach(self._robot, self._ball, abs(velocity), CYCLE):
-            self._robot = arcs.walk(self._robot, velocity, spin)
-            self._ball = arcs.roll(self._ball, SUBSTEPS)
+        self._robot, self._ball, free = arcs.free_cycle(self._robot, self._ball, velocity, spin)
+        if free:
             return
         physics = self._enter_physics()
         body, step = physics.robot, physics.space.step

@@ -155,7 +155,7 @@ class QLearner:
         s, s_next = integer("s", s, 0, n_states - 1), integer("s_next", s_next, 0, n_states - 1)
         a, n_steps = integer("a", a, 0, n_actions - 1), integer("n_steps", n_steps, 1)
         r, terminated = number("r", r), _flag("terminated", terminated)
-        best = max(Q[s_next])
+        best = max(Q[s_next].tolist())
         if best == -math.inf or Q[s, a] == -math.inf:
             raise ValueError(_refusal(s, a, s_next, best))
 
@@ -411,7 +411,7 @@ class QLearner:
         untried = self.unvisited(s)
         if not len(untried):
             untried = np.flatnonzero(np.array(self._row(s)) > -np.inf)
-        return int(self.rng.choice(untried))
+        return int(untried[self.rng.integers(len(untried))])
 
     def unvisited(self, s: int) -> NDArray[np.intp]:
         """Return the allowed actions that have had no backup in `s`, in increasing order.
