@@ -199,13 +199,13 @@ def figure_2_6(ax: Axes | None = None) -> Plot:
     --------
     >>> from matplotlib.figure import Figure
     >>> figure_2_6(Figure().subplots())
-    a step down, and all floors look alike: [.250 .250 .250 .250], [.000 .250 .250 .500]
+    one step down; all floors look alike: [.250 .250 .250 .250], [.000 .250 .250 .500]
     """
     floors = problem("floors")
     start, _, after = trajectory(floors, ["down", "dark"]).beliefs
     return plot_beliefs(
         [start, after], floors.states, ["at first", "after down"], ax,
-        printed=[None, PRINTED_FLOORS], title="a step down, and all floors look alike",
+        printed=[None, PRINTED_FLOORS], title="one step down; all floors look alike",
     )  # fmt: skip
 
 

@@ -388,13 +388,14 @@ def figure_5_8(
 def _plot_places(ax: Axes, name: str, drawn: list[tuple[float, float]]) -> Line2D:
     distance, orientation = np.array(drawn).T
     title = f"{name}: {(distance < 1000).mean():.0%} within 1 m"
-    ax = style.axes(ax, xlabel="aside (mm), left is left", ylabel="ahead (mm)", title=title)
+    ax = style.axes(ax, xlabel="to the left | to the right (mm)", ylabel="ahead (mm)", title=title)
     rim = np.linspace(-FIELD_OF_VIEW / 2, FIELD_OF_VIEW / 2, 30)
     border = MAX_BALL_DISTANCE * np.array([np.sin(rim), np.cos(rim)])
     ax.plot(*np.pad(border, ((0, 0), (1, 1))), color=style.QUIET, lw=1)
     places = distance * np.array([np.sin(orientation), np.cos(orientation)])
     (marks,) = ax.plot(*places, "o", color=style.INK, markersize=1.6, markeredgewidth=0)
     ax.set(aspect="equal", xlim=(2200, -2200), ylim=(0, 4300), xticks=(2000, 0, -2000))
+    ax.xaxis.set_major_formatter(lambda x, _: f"{abs(x):,.0f}")
     return marks
 
 

@@ -96,7 +96,7 @@ def _from_above(c: float, end: float, vigilance: float) -> Panel:
     cosine = float(reset_cosine(vigilance, end, c))
     if end <= 1 and cosine > 0:
         layers.append(Points([end], [cosine], 5.0, style.OURS))
-    return _panel("reset below the thick line", "cos(u, z_J)", (0, 1), layers)
+    return _panel("reset below the thick line", "cos(u, z) of node J", (0, 1), layers)
 
 
 def _curves(c: float, end: float, vigilance: float) -> Panel:
@@ -112,7 +112,7 @@ def _curves(c: float, end: float, vigilance: float) -> Panel:
 
 
 def _panel(words: str, ylabel: str, heights: tuple[float, float], layers: list[Layer]) -> Panel:
-    xlabel, ticks = f"norm of c d z_J; {words}", [0, 0.5, 1, 1.5]
+    xlabel, ticks = f"norm of c d z of node J; {words}", [0, 0.5, 1, 1.5]
     return Panel(xlabel, ylabel, (0, _WIDE), heights, layers, xticks=ticks)
 
 
