@@ -87,6 +87,8 @@ def test_every_explorer_follows_the_keyboard(open_page, path, capsys):
         canvas.wait_for()
         name = place.get_attribute("data-explorer")
         for slider in place.get_by_role("slider").filter(visible=True).all():
+            if slider.evaluate("slider => slider.labels[0].textContent") == "speed":
+                continue  # nothing is played here, so no picture shows it
             pictures = []
             for key in ("Home", "End", "Home", *["ArrowRight"] * 5):
                 page.evaluate("times.length = 0")
