@@ -72,7 +72,8 @@ def plot_line(
     counts, edges = np.histogram(inside, bins=100, range=(-0.5, 0.5))
     tops = _STRIP + 0.05 + (0.85 - _STRIP) * counts / max(1, counts.max())
     seen = ax.stairs(tops, edges, baseline=_STRIP + 0.05, fill=True, color=style.QUIET)
-    ax.text(0.49, 0.98, "how often seen", va="top", color=style.QUIET, fontsize="small")
+    words = "how often seen (ends left out)"
+    ax.text(0.49, 0.98, words, va="top", color=style.QUIET, fontsize="small")
     return Plot(ax, f"{len(middles)} centers", seen=seen, cells=area, centers=dots)
 
 

@@ -8,7 +8,7 @@ Examples
 --------
 >>> from matplotlib.figure import Figure
 >>> figure_2_3(Figure().subplots())
-MDP in time: state and action decide over the reward and, by chance, over the next state
+MDP in time: state and action determine the reward and, with chance, the next state
 """
 
 from __future__ import annotations
@@ -65,9 +65,7 @@ def figure_2_3(ax: Axes | None = None) -> Plot:
     >>> sorted(start for start, end in plot.wires if end == "S_t+1")
     ['A_t', 'S_t']
     """
-    title = (
-        "MDP in time: state and action decide over the reward and, by chance, over the next state"
-    )
+    title = "MDP in time: state and action determine the reward and, with chance, the next state"
     ax = blank(ax, title, (-1.3, 9.9), (-3.4, 0.6))
     places: dict[str, Place] = {}
     flow: list[tuple[str, str]] = []

@@ -1,4 +1,4 @@
-"""Stable-Baselines3's DQN on either task, for ``arkaq study benchmarks/dqn.toml --out DQN``.
+"""Stable-Baselines3's DQN on either task, for ``arkaq study data/studies/deep.toml --out DQN``.
 
 It sees what ARKAQ sees, the camera's picture, or the truth. Not part of `make bench` or of any
 test: it needs ``pip install torch stable-baselines3``, and about half a minute on one core for
