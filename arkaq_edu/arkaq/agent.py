@@ -364,6 +364,8 @@ def _watched(phase: Phase) -> Iterator[Event]:
 
 
 def _require(role: str, part: Any, methods: tuple[str, ...]) -> None:
+    if isinstance(part, type):
+        raise ValueError(f"{role} must be an object, got the class {part.__name__}")
     for name in methods:
         if not callable(getattr(part, name, None)):
             given = _checks.shown(part)

@@ -82,6 +82,10 @@ class Learner(Protocol):
 class TableLearner(BaseEstimator):
     """A table of values, and the choices of the thesis. A subclass says how to learn.
 
+    `Q` and `visits` are arrays to write into, not to replace. `explore` reads `visits`; `exploit`
+    and `greedy` read `Q`. Where `learn` needs chance, it draws from ``self.table.rng``, which
+    the last choice of the episode has used: it belongs to the agent's seed.
+
     Examples
     --------
     A learner of one's own: Monte Carlo, which takes the discounted return as the target.

@@ -44,6 +44,7 @@ class Sensing:
 
     Notes
     -----
+    The noise of a sighting is `R` and `range_noise`, and no other: there are no subclasses.
     `thesis` returns the numbers of section 5.2. `consistent` (for the ball) and `goal` return
     numbers measured on the field. With these, the filter's innovations are as large as it expects.
     """
@@ -76,6 +77,9 @@ class Sensing:
             keep(name, getattr(kalman, name))
         keep("B", None if self.B is None else kalman.B)
         keep("range_noise", _checks.number("range_noise", self.range_noise, 0, 1))
+
+    def __init_subclass__(cls) -> None:
+        raise TypeError("Sensing has no subclasses: its noise is R and range_noise, and no other")
 
     def __eq__(self, other: object) -> bool:
         """Compare by value: arrays and lists of the same numbers are equal."""

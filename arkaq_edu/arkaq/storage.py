@@ -9,6 +9,7 @@ import time
 import zipfile
 from collections.abc import Mapping
 from contextlib import suppress
+from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -330,9 +331,10 @@ def _identity(agent: Arkaq) -> dict[str, Any]:
 def describe_environment(env: gymnasium.Env) -> dict[str, Any]:
     """Return what decides how the episodes of an environment go, as plain data.
 
-    These are its name, the number of its actions, the time limit, the wrappers that change what
-    the agent observes, earns or does, and the environment's own settings: a dictionary
-    ``settings`` if it has one, else what it was made with.
+    These are its name, the number of its actions, the time limit, the wrappers with the arguments
+    that they keep under their names, and the environment's own settings: a dictionary ``settings``
+    if it has one, else what it was made with. Wrappers of Gymnasium that change nothing that the
+    agent observes, earns or does are left out.
 
     Examples
     --------
@@ -345,8 +347,11 @@ def describe_environment(env: gymnasium.Env) -> dict[str, Any]:
 
     bare, spec, wrappers = env, env.spec, []
     while isinstance(bare, Wrapper):
-        if isinstance(bare, (ActionWrapper, ObservationWrapper, RewardWrapper)):
-            wrappers.append(type(bare).__name__)
+        changes = isinstance(bare, (ActionWrapper, ObservationWrapper, RewardWrapper))
+        if changes or not type(bare).__module__.startswith("gymnasium."):
+            keeps = signature(type(bare)).parameters.keys() - {"env"}
+            kept = {name: value for name, value in vars(bare).items() if name in keeps}
+            wrappers.append({"wrapper": type(bare).__name__, **kept})
         bare = bare.env
     settings = getattr(bare, "settings", None)
     if not isinstance(settings, Mapping):

@@ -77,7 +77,8 @@ class BallApproachEnv(gymnasium.Env[np.ndarray, int]):
     Parameters
     ----------
     near, far : float
-        The least and the greatest distance of the ball at the start (mm), in [200, 4100].
+        The least and the greatest distance of the ball at the start (mm), in [200, 4100], `far`
+        at least as large as `near`. A ball below 500 mm is reached in the first cycle.
     placement : {"area", "thesis"}
         How the ball is placed; see `arkaq_edu.field.random_place`.
     legs : Legs, optional

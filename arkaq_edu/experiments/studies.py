@@ -135,6 +135,10 @@ def study(
 
     Notes
     -----
+    Agents are trained on the task of the thesis, `approach.make_task` or `goal.make_task`, where
+    equation 5.1 places the ball. They are judged by `approach.evaluate` or `goal.evaluate`, where
+    balls lie evenly over the view, from the seed ``10_000 + seed``, the same for all settings.
+
     A part of your own is known by its class and its attributes. If you change its code, choose
     another folder.
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import importlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
+from difflib import get_close_matches
 from functools import partial
+from inspect import signature
 from typing import Any
 
 import numpy as np
@@ -168,6 +170,7 @@ def arrange(problem: str, setting: Mapping[str, Any]) -> Arranged:
     parts = {name: rest.pop(name, None) for name in ("vigilance", "segmenter", "learner")}
     sensing = part("sensing", rest.pop("sensing", None), SENSES)
     task = {name: _bodily(name, value) for name, value in rest.items()}
+    _refuse_unknown(problem, task)
     where = {k: v for k, v in task.items() if k == "goal_distance"}
     vigilance = parts["vigilance"]
     vigilance = room.usual_vigilance(**where) if vigilance is None else vigilance
@@ -182,10 +185,7 @@ def arrange(problem: str, setting: Mapping[str, Any]) -> Arranged:
         learner=part("learner", parts["learner"], LEARNERS),
         rng=0,
     )
-    try:
-        room.make_task(**task).close()
-    except TypeError as error:
-        raise ValueError(f"settings of {problem} must be known: {error}") from error
+    room.make_task(**task).close()  # it refuses what is out of range
     return Arranged(
         {
             "vigilance": vigilance,
@@ -196,6 +196,16 @@ def arrange(problem: str, setting: Mapping[str, Any]) -> Arranged:
         },
         task,
     )
+
+
+def _refuse_unknown(problem: str, task: Mapping[str, Any]) -> None:
+    """Refuse settings that the task does not have."""
+    own = [*signature(type(PROBLEMS[problem].make_task().unwrapped)).parameters]
+    known = [*own, *_LEARNING, *_SENSING, "vigilance", "sensing", "segmenter", "learner"]
+    for name in task:
+        if name not in own:
+            like = "".join(f"; did you mean {near}?" for near in get_close_matches(name, known, 1))
+            raise ValueError(f"settings of {problem} must be known, got {name!r}{like}")
 
 
 def _bodily(name: str, value: Any) -> Any:

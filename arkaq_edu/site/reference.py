@@ -13,9 +13,12 @@ from typing import Any
 
 import gymnasium
 import numpy as np
+from matplotlib.figure import Figure
 from PIL import Image
 
 from arkaq_edu import envs
+from arkaq_edu.figures.pomdp import plot_policy_graph
+from arkaq_edu.pomdp import problem, solve_pomdp
 
 #: The rooms with a page of their own, from the ground up, and their titles.
 ROOMS = {
@@ -194,11 +197,11 @@ def write_environments(folder: Path, pictures: Path) -> None:
         lines = text.splitlines()
         told = "\n".join(lines[: _numpydoc(lines)]) if "## " in text else lines[0]
         page = [f"# {name}\n"]
-        if "rgb_array" in kind.metadata.get("render_modes", []):
-            file = f"{name}.png"
-            _photograph(name, pictures / file)
-            page.append(f"![{name}, from above](../_static/pictures/{file})\n")
-        page += [f'```python\nenv = gymnasium.make("arkaq_edu:{name}")\n```\n', told, ""]
+        file = f"{name}.png"
+        seen = _photograph(name, pictures / file)
+        page.append(f"![{seen}](../_static/pictures/{file})\n")
+        [made, *_] = re.findall(r"env = gymnasium.make\(.*\)", text)
+        page += [f"```python\n{made}\n```\n", told, ""]
         page.append("## Arguments\n")
         page.append(_rst(".. currentmodule:: arkaq_edu.envs", f".. autoclass:: {kind.__name__}",
                          "   :no-index:"))  # fmt: skip
@@ -239,8 +242,15 @@ def envs_class(name: str) -> type[gymnasium.Env]:
     return getattr(envs, str(entry).split(":")[1])
 
 
-def _photograph(name: str, file: Path) -> None:
+def _photograph(name: str, file: Path) -> str:
+    """Make the picture of an environment, and say what it shows."""
+    if name == "POMDP-v0":  # it has nothing to be seen from above
+        tiger, fig = problem("tiger"), Figure(layout="constrained")
+        plot_policy_graph(solve_pomdp(tiger), tiger, fig.subplots())
+        fig.savefig(file, dpi=144, bbox_inches="tight")
+        return "The tiger as POMDP-v0: what to do after each observation, from the start on"
     env = gymnasium.make(name, render_mode="rgb_array")
     env.reset(seed=0)
     Image.fromarray(np.asarray(env.render())).save(file)
     env.close()
+    return f"{name}, from above"

@@ -66,7 +66,7 @@ def write_trace(page: Path) -> None:
     parts = [
         "# From the thesis to the code\n\nEach equation, figure and section of the thesis, and "
         "each of its misprints, with the code, the tests and the chapters in which it lives. "
-        "`arkaq trace 2.47` says the same, and names them all.\n"
+        "`arkaq trace 2.47` says the same, and with `--all` it names them all.\n"
     ]
     for kind, title in _KINDS.items():
         parts.append(f"## {title}\n\n| place | code | tests | chapters |\n|---|---|---|---|")
@@ -92,7 +92,7 @@ def _home(row: Any, names: dict[tuple[str, str], str]) -> str:
     full = names.get((row.file, row.name))
     if full:
         return f"{{py:obj}}`{row.name} <{full}>`"
-    return f"`{row.name}` in {row.file}"
+    return f"`{row.name}` in `{row.file}`"
 
 
 def _chapter(file: str, titles: dict[str, str]) -> str:

@@ -6,7 +6,7 @@ import pickle
 import numpy as np
 import pytest
 
-from arkaq_edu.arkaq import Arkaq, Estimator, Sensing, TrainingSettings
+from arkaq_edu.arkaq import Arkaq, Estimator, Sarsa, Sensing, TrainingSettings
 from tests.arkaq.brief import BRIEF, SENSINGS, brief_agent, brief_scorer, digest, near_task
 
 
@@ -42,6 +42,7 @@ def test_the_two_sensings_see_the_world_differently(brief):
         ({"learning": {"patterns": 5}}, "learning must be of the class TrainingSettings"),
         ({"segmenter": 0}, "segmenter must have the methods"),
         ({"learner": {}}, "learner must have the methods"),
+        ({"learner": Sarsa}, "learner must be an object, got the class Sarsa"),
         ({"learner": np.zeros((99, 99))}, "learner must have the methods .{,200}$"),
     ],
 )

@@ -1,5 +1,6 @@
 """A checkpoint belongs to one run: its settings, its environment, and one process at a time."""
 
+import itertools
 import json
 import os
 import resource
@@ -17,20 +18,19 @@ from arkaq_edu.field import Camera, Kick, Legs
 from tests.arkaq.brief import BRIEF, BRIEF_GOAL, GOAL_TASK, brief_agent, digest, near_task
 
 
-class Interrupted(gymnasium.Wrapper):
-    """Ctrl-C, or what else happens, at the k-th step."""
+def interrupted(env, step, happens=None):
+    """The environment, in which Ctrl-C, or what else happens, comes at the k-th step."""
+    go_on, left = env.unwrapped.step, itertools.count(step - 1, -1)
 
-    def __init__(self, env, step, happens=None):
-        super().__init__(env)
-        self.steps, self.happens = step, happens
-
-    def step(self, action):
-        self.steps -= 1
-        if self.steps == 0:
-            if self.happens is None:
+    def count(action):
+        if next(left) == 0:
+            if happens is None:
                 raise KeyboardInterrupt
-            self.happens()
-        return self.env.step(action)
+            happens()
+        return go_on(action)
+
+    env.unwrapped.step = count
+    return env
 
 
 @pytest.fixture(autouse=True)
@@ -45,7 +45,7 @@ def begun(tmp_path):
     def interrupt(step, **options):
         path = tmp_path / f"{step}.npz"
         with pytest.raises(KeyboardInterrupt):
-            brief_agent(env=Interrupted(near_task(**options), step), checkpoint=path)
+            brief_agent(env=interrupted(near_task(**options), step), checkpoint=path)
         return path
 
     return interrupt
@@ -119,7 +119,7 @@ def test_so_are_the_settings_of_the_goal(tmp_path, options, words):
 def test_an_agent_in_memory_is_not_taken_up_in_another_environment_either():
     agent = Arkaq(0.2, learning=BRIEF, rng=4)
     with pytest.raises(KeyboardInterrupt):
-        agent.learn(Interrupted(near_task(), 300), progress=False)
+        agent.learn(interrupted(near_task(), 300), progress=False)
     with pytest.raises(ValueError, match=r"this agent holds .*far: 1200\.0, not 4000\.0"):
         agent.learn(near_task(far=4000.0), progress=False)
     assert digest(agent.learn(near_task(), progress=False)) == digest(brief_agent())
@@ -145,7 +145,7 @@ def test_segmenting_in_one_and_learning_in_another_environment_is_resumed(tmp_pa
         return agent.learn(env, path, progress=False)
 
     with pytest.raises(KeyboardInterrupt):
-        train(Interrupted(gymnasium.make(GOAL_TASK), 30))
+        train(interrupted(gymnasium.make(GOAL_TASK), 30))
     resumed = train(gymnasium.make(GOAL_TASK))
     alone = Arkaq(0.06, task="goal", learning=BRIEF_GOAL, rng=4)
     alone.segment(make_look_around(), progress=False)
@@ -169,14 +169,22 @@ class Doubled(gymnasium.RewardWrapper):
         return 2 * reward
 
 
+class Hurried(gymnasium.Wrapper):
+    def __init__(self, env, cost):
+        super().__init__(env)
+        self.cost = cost
+
+
 class Thing:
     """Its representation holds its address."""
 
 
 def test_environments_that_are_not_ours_are_described_by_what_they_were_made_with():
     described = storage.describe_environment(Doubled(near_task()))
-    assert described["wrappers"] == ["Doubled"]
+    assert described["wrappers"] == [{"wrapper": "Doubled"}]
     assert described["environment"] == "BallApproach-v0"
+    dear, cheap = (storage.describe_environment(Hurried(near_task(), cost)) for cost in (50, 1))
+    assert dear["wrappers"] == [{"wrapper": "Hurried", "cost": 50}] != cheap["wrappers"]
 
     class Other(gymnasium.Env):
         observation_space = gymnasium.spaces.Box(-1, 1, (3,))
@@ -239,7 +247,7 @@ def test_a_checkpoint_in_use_is_refused_by_name(tmp_path, brief):
                 brief_agent(seed=seed, checkpoint=path)
             refused.append(str(path) in str(caught.value))
 
-    env = Interrupted(near_task(), 200, begin_another)
+    env = interrupted(near_task(), 200, begin_another)
     assert digest(brief_agent(env=env, checkpoint=path)) == digest(brief)
     assert refused == [True, True]
     assert os.listdir(tmp_path) == ["agent.npz"]

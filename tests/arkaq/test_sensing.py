@@ -152,6 +152,11 @@ def test_a_filter_that_does_not_know_the_actions_takes_any():
         senses.observe(LOOK, -1)
 
 
+def test_a_noise_of_its_own_is_refused_rather_than_ignored():
+    with pytest.raises(TypeError, match="no subclasses"):
+        type("Other", (Sensing,), {"noise": lambda self, z: np.eye(2)})
+
+
 @pytest.mark.parametrize("sensing", [None, {}, "consistent"])
 def test_an_estimator_of_no_sensing_is_refused(sensing):
     with pytest.raises(ValueError, match="sensing must be of the class Sensing"):

@@ -1,12 +1,12 @@
 """Files of agents, and runs that are interrupted."""
 
+import itertools
 import json
 import math
 import os
 import tracemalloc
 import zipfile
 
-import gymnasium
 import numpy as np
 import pytest
 
@@ -336,24 +336,22 @@ def test_what_is_no_agent_at_all_is_refused(tmp_path):
         Arkaq.load(tmp_path / "nowhere.npz")
 
 
-class Interrupted(gymnasium.Wrapper):
-    """Ctrl-C at the k-th step, or at the k-th reset."""
+def interrupted(env, step=-1, reset=-1):
+    """The environment, in which Ctrl-C comes at the k-th step, or at the k-th reset."""
+    world = env.unwrapped
 
-    def __init__(self, env, step=-1, reset=-1):
-        super().__init__(env)
-        self.steps, self.resets = step, reset
+    def counted(go_on, k):
+        left = itertools.count(k - 1, -1)
 
-    def step(self, action):
-        self.steps -= 1
-        if self.steps == 0:
-            raise KeyboardInterrupt
-        return self.env.step(action)
+        def count(*args, **options):
+            if next(left) == 0:
+                raise KeyboardInterrupt
+            return go_on(*args, **options)
 
-    def reset(self, **options):
-        self.resets -= 1
-        if self.resets == 0:
-            raise KeyboardInterrupt
-        return self.env.reset(**options)
+        return count
+
+    world.step, world.reset = counted(world.step, step), counted(world.reset, reset)
+    return env
 
 
 @pytest.fixture
@@ -373,7 +371,7 @@ def test_an_interrupted_run_comes_to_the_same_result(brief, tmp_path, often, whe
     path = tmp_path / "run.npz"
     learner = Arkaq(0.2, learning=BRIEF, rng=4)
     with pytest.raises(KeyboardInterrupt):
-        learner.learn(Interrupted(near_task(), **when), path, progress=False)
+        learner.learn(interrupted(near_task(), **when), path, progress=False)
     assert Arkaq.load(path).seed == 4
     if not same:
         learner = Arkaq(0.2, learning=BRIEF, rng=4)
@@ -392,7 +390,7 @@ def test_a_run_interrupted_again_and_again_comes_to_the_same_result(brief, tmp_p
     while True:
         learner = Arkaq(0.2, learning=BRIEF, rng=4)
         try:
-            learner.learn(Interrupted(near_task(), step=45), path, progress=False)
+            learner.learn(interrupted(near_task(), step=45), path, progress=False)
             break
         except KeyboardInterrupt:
             interruptions += 1
@@ -403,7 +401,7 @@ def test_a_run_interrupted_again_and_again_comes_to_the_same_result(brief, tmp_p
 def test_even_the_first_moments_leave_a_file(tmp_path):
     path = tmp_path / "run.npz"
     with pytest.raises(KeyboardInterrupt):
-        brief_agent(env=Interrupted(near_task(), step=30), checkpoint=path)
+        brief_agent(env=interrupted(near_task(), step=30), checkpoint=path)
     assert Arkaq.load(path).learning == BRIEF
 
 
@@ -411,7 +409,7 @@ def test_a_finished_run_is_not_run_again(brief, tmp_path):
     path = tmp_path / "run.npz"
     assert digest(brief_agent(checkpoint=path)) == digest(brief)
     before = path.read_bytes()
-    untouchable = Interrupted(near_task(), step=1, reset=1)
+    untouchable = interrupted(near_task(), step=1, reset=1)
     assert digest(brief_agent(env=untouchable, checkpoint=path)) == digest(brief)
     assert path.read_bytes() == before
 
@@ -458,7 +456,7 @@ def test_other_parts_of_the_house_are_saved_whole_and_resumed(parts, stop, tmp_p
     once = Arkaq(learning=BRIEF, rng=4, **parts).learn(near_task(), progress=False)
     if stop is not None:
         with pytest.raises(KeyboardInterrupt):
-            env = Interrupted(near_task(), step=stop)
+            env = interrupted(near_task(), step=stop)
             Arkaq(learning=BRIEF, rng=4, **parts).learn(env, path, progress=False)
         Arkaq(learning=BRIEF, rng=4, **parts).learn(near_task(), path, progress=False)
     else:
@@ -492,7 +490,7 @@ def test_parts_of_ones_own_are_refused_by_name_before_any_work(parts, words, tmp
     path = tmp_path / "agent.npz"
     agent = Arkaq(learning=BRIEF, rng=4, **parts)
     with pytest.raises(ValueError, match=words):
-        agent.learn(Interrupted(near_task(), reset=1), path, progress=False)
+        agent.learn(interrupted(near_task(), reset=1), path, progress=False)
     agent.learn(near_task(), progress=False)
     with pytest.raises(ValueError, match=words):
         agent.save(path)
