@@ -29,6 +29,7 @@ MAX_STRIDE = 190  # mm: the end of the sliders
 EXPOSURE = 1 / 30  # s: how long a picture gathers light
 
 _AHEAD = 5  # cycles that the dashed line shows
+_GAZE = 700.0  # mm; the length of the line that shows it
 _BLUE = "#1b4f8f"
 _FAR = 3000.0  # mm: any distance does, because the goal's middle is shown at the camera's height
 
@@ -89,7 +90,7 @@ def draw(drive: Drive, left: float, right: float, head: float, presses: Sequence
     # After a kick there is no room for the next step; the dashed line shows it anyway.
     last = sights if drive.message else f"next {ahead:+.0f} mm, {turn:+.2f} rad"
     fact = _minus(f"{drive.message or sights}; {last}")
-    return Scene(fact, [_eye(drive, look), _field(drive, look, left, right)])
+    return Scene(fact, [_eye(drive, look), _field(drive, look, left, right, head)])
 
 
 def _eye(drive: Drive, look: Look) -> Panel:
@@ -118,16 +119,18 @@ def _eye(drive: Drive, look: Look) -> Panel:
     return Panel("", "", (0.0, WIDTH + 8.0), (-18.0, HEIGHT + 18.0), layers, bare=True)
 
 
-def _field(drive: Drive, look: Look, left: float, right: float) -> Panel:
-    """Return the field from above, with the next steps, and the ball where it was seen."""
+def _field(drive: Drive, look: Look, left: float, right: float, head: float) -> Panel:
+    """Return the field from above: the next steps, where to look next, and the ball as seen."""
     x, y, heading = drive.world.pose
     path = motion.arc_path(drive.world.pose, left, right, _AHEAD)
+    gaze = _GAZE * math.cos(heading + head), _GAZE * math.sin(heading + head)
     words = f"x {x:,.0f} mm, y {y:,.0f} mm, heading {heading:+.2f} rad, {drive.world.time:.1f} s"
+    legend = f"from above; dashed: {_AHEAD} such steps without a drift; thin: the next look"
     layers: list[Layer] = [
         Picture(drive.above, EXTENT),
         Line(path[:, 0], path[:, 1], "white", 2.0, dashed=True),
         Points(path[-1:, 0], path[-1:, 1], 3.5, "white"),
-        Text(-3000, 2170, f"from above; dashed: {_AHEAD} such steps without a drift"),
+        Text(-3000, 2170, legend),
         Text(-3000, -2170, _minus(words), style.QUIET),
         Line([-2880, -2880, -2480], [-1480, -1880, -1880], "white"),
         Text(-2420, -1880, "x", "white"),
@@ -137,6 +140,7 @@ def _field(drive: Drive, look: Look, left: float, right: float) -> Panel:
         distance, angle = look.ball.distance, heading + look.ball.orientation
         seen = x + distance * math.cos(angle), y + distance * math.sin(angle)
         layers.append(Points([seen[0]], [seen[1]], 9.0, hollow=True))
+    layers.append(Line([x, x + gaze[0]], [y, y + gaze[1]], "white", 1.0))
     return Panel("", "", EXTENT[:2], (-2340.0, 2340.0), layers, width=1.5, bare=True)
 
 
