@@ -361,10 +361,11 @@ def _contents(parts: Mapping[str, pd.DataFrame], figures: Mapping[str, Draw]) ->
     for chapter, title in CHAPTERS.items():
         own = [number for number in figures if number.split(".")[0] == chapter]
         if own:
-            jumps = " ".join(f'<a href="#figure-{number}">{number}</a>' for number in own)
+            numbered = [number for number in own if number != SEARCH]
+            jumps = " ".join(f'<a href="#figure-{number}">{number}</a>' for number in numbered)
+            named = escape(title if chapter == SEARCH else f"{chapter} {title}")
             shown.append(
-                f'<li><a href="#figures-{chapter}">{chapter} {escape(title)}</a>'
-                f'<div class="jumps">{jumps}</div></li>'
+                f'<li><a href="#figures-{chapter}">{named}</a><div class="jumps">{jumps}</div></li>'
             )
     figures_part = f'<p><a href="#figures">Figures</a></p><ul>{"".join(shown)}</ul>'
     return f'<p><a href="#numbers">Numbers</a></p><ul>{"".join(links)}</ul>' + (

@@ -145,7 +145,7 @@ def test_a_wrong_answer_is_told_what_is_wrong(exercise, answer, hint, seed):
         (lambda n: 0.1, "never settles: after 100,000 visits 23% of a target's scatter"),
         (lambda n: 1.0, "never settles: after 100,000 visits 100%"),
         (lambda n: n**-0.3, "never settles"),
-        (lambda n: n**-0.5, "never settles"),
+        (lambda n: n**-0.5, "falls too slowly: after 100,000 visits 4% of"),
         (lambda n: 1 / n**2, "stops too soon"),
         (lambda n: 0.5**n, "29% of the value is still what it began with"),
         (lambda n: 0.1 / n, "of the value is still what it began with"),
