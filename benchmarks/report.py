@@ -13,6 +13,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pyperf
+from matplotlib.ticker import LogLocator
 
 from arkaq_edu._files import replacing
 from benchmarks.case import Curve, Row
@@ -140,9 +141,14 @@ def draw(curves: Sequence[Curve], path: Path) -> None:
         for ax in axes.flat[len(curves) :]:
             ax.remove()
         for ax, curve in zip(axes.flat, curves, strict=False):
-            ax.loglog(curve.sizes, curve.seconds, "o-", color="#0072b2", markerfacecolor="white")
-            ax.set(xlabel=curve.axis, ylabel="seconds")
-            ax.set_title(f"{curve.title}: exponent {curve.exponent:.2f}", fontsize=9)
+            ms = [1000 * seconds for seconds in curve.seconds]
+            ax.loglog(curve.sizes, ms, "o-", color="#0072b2", markerfacecolor="white")
+            ax.set(xlabel=curve.axis, ylabel="ms", ylim=(min(ms) / 3, max(ms) * 3))
+            ax.set_xticks(curve.sizes, [f"{size:,}" for size in curve.sizes])
+            ax.minorticks_off()
+            ax.yaxis.set_major_locator(LogLocator(subs=(1, 3)))
+            ax.yaxis.set_major_formatter(lambda ms, _: f"{ms:,.10g}")
+            ax.set_title(f"{curve.title}\nexponent {curve.exponent:.2f}", fontsize=9)
             ax.grid(alpha=0.3)
         with replacing(path) as part:
             figure.savefig(part, format="svg", metadata={"Date": None})
