@@ -174,10 +174,17 @@ def out_of_reach(robot, ball, fastest, seconds):
 
 @kernel
 def free_cycle(robot, ball, velocity, spin):
-    """Return the motions of robot and ball after a cycle, and whether nothing was in reach."""
-    if not out_of_reach(robot, ball, abs(velocity), CYCLE):
-        return robot, ball, False
-    return walk(robot, velocity, spin), roll(ball, SUBSTEPS), True
+    """Return the motions of robot and ball after a cycle, and whether nothing was in reach.
+
+    Both are plain tuples: it takes a kernel microseconds to read or to make a named one.
+    """
+    robot, ball = Motion(*robot), Motion(*ball)
+    free = out_of_reach(robot, ball, abs(velocity), CYCLE)
+    if free:
+        robot, ball = walk(robot, velocity, spin), roll(ball, SUBSTEPS)
+    x, angle, v, w = robot
+    ball_x, ball_angle, ball_v, ball_w = ball
+    return (x, angle, v, w), (ball_x, ball_angle, ball_v, ball_w), free
 
 
 @kernel

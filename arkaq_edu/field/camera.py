@@ -275,7 +275,11 @@ def _measure(cols, rows, height, tilt, min_pixels):
 
 @kernel
 def _measure_ball(view, min_pixels):
-    """Return distance and orientation of the ball as it is seen now; (0, 0) if it is not."""
+    """Return distance and orientation of the ball as it is seen now; (0, 0) if it is not.
+
+    `view` is a View as a plain tuple: it takes a kernel microseconds to read a named one.
+    """
+    view = View(*view)
     cols, rows = _ball_pixels(view)
     return _measure(cols, rows, view.height, view.tilt, min_pixels)
 
@@ -345,7 +349,7 @@ class Camera:
         """
         if self.blurred(world):
             return None
-        distance, orientation = _measure_ball(self.view(world), self.min_pixels)
+        distance, orientation = _measure_ball(tuple(self.view(world)), self.min_pixels)
         if distance == 0.0:
             return None
         return Sighting(distance, orientation + world.pan if world.pan else orientation)

@@ -197,8 +197,10 @@ class World:
 
     def _move(self, velocity: complex, spin: float) -> None:
         """Move the body for one cycle at a velocity in its own frame (mm/s, rad/s)."""
-        self._robot, self._ball, free = arcs.free_cycle(self._robot, self._ball, velocity, spin)
+        moved = arcs.free_cycle(tuple(self._robot), tuple(self._ball), velocity, spin)
+        robot, ball, free = moved
         if free:
+            self._robot, self._ball = Motion(*robot), Motion(*ball)
             return
         physics = self._enter_physics()
         body, step = physics.robot, physics.space.step
