@@ -100,12 +100,16 @@ def test_every_explorer_follows_the_keyboard(open_page, path, capsys):
             low, high = pictures[:2]
             assert low != high, f"{name}: {slider.get_attribute('title')}: changes nothing"
         for button in place.get_by_role("button").all()[:3]:
+            # At the start there is nothing to start again, and a button may have to wait its turn.
+            if button.get_attribute("aria-disabled") == "true" or "start" in button.inner_text():
+                continue
             before = canvas.evaluate(PICTURE)
             button.click()
             page.evaluate(DONE)
-            moved = canvas.evaluate(PICTURE) != before
-            assert moved or "arkaq-off" in (button.get_attribute("class") or ""), name
+            assert canvas.evaluate(PICTURE) != before, f"{name}: {button.inner_text()}"
     assert page.faults == []
+    if not times:
+        return  # it has buttons alone
     with capsys.disabled():
         most, median = max(times), statistics.median(times)
         slow = "" if most < WANTED else "  slower than wanted"
