@@ -204,22 +204,23 @@ def coast(ball, push, dt, robot):
 
     Parameters
     ----------
-    ball : Motion
-        The motion of the ball.
+    ball : tuple
+        The motion of the ball; both motions are plain tuples, as for `free_cycle`.
     push : complex
         Its acceleration by the carpet (mm/s^2).
     dt : float
         The length of a step (s).
-    robot : Motion
-        A robot that stands.
+    robot : tuple
+        The motion of a robot that stands.
 
     Returns
     -------
-    ball : Motion
+    ball : tuple
         The motion after it.
     places : ndarray of complex, shape (3 n,)
         Where the ball is after each step (mm).
     """
+    ball, robot = Motion(*ball), Motion(*robot)
     places, n = np.empty(LOOK * _LONGEST_WAY, np.complex128), 0
     while (
         n < len(places)
@@ -230,4 +231,4 @@ def coast(ball, push, dt, robot):
             ball = swerve(ball, push, dt)
             places[n] = ball.place
             n += 1
-    return ball, places[:n]
+    return (ball.place, ball.angle, ball.velocity, ball.spin), places[:n]

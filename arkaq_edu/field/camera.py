@@ -180,7 +180,11 @@ def _colors(view, cols, rows):
 
 @kernel
 def _blue_ends(view, cols, rows):
-    """Return which of the pixels at `cols` and `rows` are the first and the last sky-blue one."""
+    """Return which of the pixels at `cols` and `rows` are the first and the last sky-blue one.
+
+    `view` is a View as a plain tuple, as for `_measure_ball`.
+    """
+    view = View(*view)
     first, last = 0, len(cols) - 1
     while first <= last and _color(view, cols[first], rows[first]) != pitch.BLUE:
         first += 1
@@ -400,7 +404,7 @@ class Camera:
         """
         if self.blurred(world):
             return None
-        view = self.view(world)
+        view = tuple(self.view(world))
         seen = self._goal(lambda cols, rows: _blue_ends(view, cols, rows))
         return seen and seen._replace(orientation=seen.orientation + world.pan)
 

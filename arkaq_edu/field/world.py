@@ -326,16 +326,16 @@ class World:
 
     def _roll(self, ball: Motion, push: complex, dt: float) -> tuple[Motion, list[complex]]:
         """Let the ball roll until something may be in its way, else for one look by physics."""
-        end, way = arcs.coast(ball, push, dt, self._robot)
+        end, way = arcs.coast(tuple(ball), push, dt, tuple(self._robot))
         places = way.tolist()
         for place in places:
             self.time += dt
             if self.watch is not None:
                 self._ball = Motion(place, 0.0, 0j, 0.0)
                 self.watch()
-        self._ball = end
+        self._ball = Motion(*end)
         if places:
-            return end, places[arcs.LOOK - 1 :: arcs.LOOK]
+            return self._ball, places[arcs.LOOK - 1 :: arcs.LOOK]
         physics = self._enter_physics()
         for _ in range(arcs.LOOK):
             physics.ball.force = push.real * pitch.BALL_MASS, push.imag * pitch.BALL_MASS

@@ -28,7 +28,7 @@ def in_both_ways(story):
         choices[far] += 1
         return far
 
-    arcs.coast(STILL, 0j, 0.1, STILL)  # compiled while the world is whole
+    arcs.coast(tuple(STILL), 0j, 0.1, tuple(STILL))  # compiled while the world is whole
     plain_cycle = getattr(arcs.free_cycle, "py_func", arcs.free_cycle)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(arcs, "free_cycle", plain_cycle)  # a compiled one would not be counted
