@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from inspect import signature
 from pathlib import Path
+from textwrap import shorten
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -135,7 +136,8 @@ def load(cls: type[Arkaq], path: str | os.PathLike[str]) -> Arkaq:
     except KeyError as error:
         raise ValueError(f"{path} is not an agent that can be read: it has no {error}") from error
     except Exception as error:  # a damaged archive fails in more ways than can be listed
-        raise ValueError(f"{path} is not an agent that can be read: {error}") from error
+        said = shorten(str(error), 300)  # zipfile quotes what it finds, however long
+        raise ValueError(f"{path} is not an agent that can be read: {said}") from error
     return agent
 
 

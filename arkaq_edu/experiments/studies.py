@@ -348,8 +348,9 @@ def _cells(
     grid: Mapping[str, Any], settings: Mapping[str, Any], seeds: int | Iterable[int], task: Task
 ) -> list[Cell]:
     """Return all cells, the last setting varying fastest but for the seed."""
-    numbers = range(_checks.integer("seeds", seeds, 1)) if isinstance(seeds, int) else seeds
-    numbers = _checks.integers("seeds", [*numbers]).tolist()
+    if not isinstance(seeds, Iterable):
+        seeds = range(_checks.integer("seeds", seeds, 1))
+    numbers = _checks.integers("seeds", [*seeds]).tolist()
     if not numbers or len(set(numbers)) < len(numbers):
         raise ValueError(f"seeds must be different numbers, at least one, got {numbers}")
     for name in _checks.instance("grid", grid, dict).keys() & settings.keys():

@@ -336,6 +336,18 @@ def test_what_is_no_agent_at_all_is_refused(tmp_path):
         Arkaq.load(tmp_path / "nowhere.npz")
 
 
+def test_the_message_about_a_damaged_archive_stays_short(brief, tmp_path):
+    path = tmp_path / "agent.npz"
+    brief.save(path)
+    data = bytearray(path.read_bytes())
+    at = data.index(b"visits.npy")  # a name in the file that is not the directory's, and very long
+    data[at - 4 : at - 2] = (9000).to_bytes(2, "little")
+    path.write_bytes(data)
+    with pytest.raises(ValueError, match="is not an agent that can be read") as caught:
+        Arkaq.load(path)
+    assert len(str(caught.value)) < 1000
+
+
 def interrupted(env, step=-1, reset=-1):
     """The environment, in which Ctrl-C comes at the k-th step, or at the k-th reset."""
     world = env.unwrapped

@@ -2,6 +2,7 @@
 
 import ast
 import dataclasses
+import math
 import os
 import re
 import signal
@@ -201,6 +202,7 @@ def test_what_fails_for_good_is_named_when_all_else_is_finished(tmp_path):
         ({"grid": {"hold": [1]}, "settings": {"hold": 2}}, "hold must be in grid or in settings"),
         ({"seeds": [1, 1]}, "seeds must be different"),
         ({"seeds": 0}, "seeds must be"),
+        ({"seeds": math.inf}, "seeds must be"),
         ({"task": "score"}, 'task must be approach, goal or "module:name"'),
         ({"task": "math:pi"}, "task must be a function"),
         ({"jobs": 0}, "jobs must be"),
