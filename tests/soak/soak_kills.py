@@ -45,7 +45,7 @@ def small_disk(tmp_path):
     """A folder on a disk of its own that is soon full, where the system lets one mount it."""
     folder = tmp_path / "small"
     folder.mkdir()
-    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=24k", "tmpfs", str(folder)])
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=8k", "tmpfs", str(folder)])
     if mounted.returncode:
         pytest.skip("this user cannot mount a disk")
     yield folder
