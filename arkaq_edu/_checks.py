@@ -18,8 +18,6 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arkaq_edu._compiled import kernel
-
 #: Larger magnitudes are refused, so that no method has to guard its products against overflow.
 LARGEST = 1e100
 
@@ -248,7 +246,8 @@ def covariance(name: str, value: ArrayLike, n: int, *, stack: bool = False) -> N
     x = array(name, value, (None, n, n) if stack else (n, n))
     if x.size == 0:
         return x
-    if _is_diagonal(x.reshape(-1, n, n)):
+    variances = x.diagonal(0, -2, -1)
+    if np.count_nonzero(x) == np.count_nonzero(variances > 0):
         return x  # a diagonal shows its eigenvalues
     transposed = x.swapaxes(-2, -1)
     scale = np.maximum(np.abs(x).max(axis=(-2, -1)), np.finfo(float).tiny)
@@ -271,15 +270,6 @@ def covariance(name: str, value: ArrayLike, n: int, *, stack: bool = False) -> N
             f"{lowest[row]:g}{f' in row {row}' if stack else ''}"
         )
     return x
-
-
-@kernel
-def _is_diagonal(matrices):
-    """Tell whether all the matrices are diagonal, with nothing negative on the diagonal."""
-    diagonal = True
-    for i, j, k in np.ndindex(matrices.shape):
-        diagonal = diagonal and (matrices[i, j, k] == 0 or (j == k and matrices[i, j, k] > 0))
-    return diagonal
 
 
 def distribution(

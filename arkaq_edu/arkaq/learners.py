@@ -83,8 +83,8 @@ class TableLearner(BaseEstimator):
     """A table of values, and the choices of the thesis. A subclass says how to learn.
 
     `Q` and `visits` are arrays to write into, not to replace. `explore` reads `visits`; `exploit`
-    and `greedy` read `Q`. Where `learn` needs chance, it draws from ``self.table.rng``, which
-    the last choice of the episode has used: it belongs to the agent's seed.
+    and `greedy` read `Q`. A `learn` that needs chance keeps the generator that `explore` and
+    `exploit` are given, for only that one belongs to the agent's seed.
 
     Examples
     --------

@@ -162,7 +162,9 @@ class Sensing:
         """
         z = _checks.array("z", z, (len(self.low),))
         _checks.number("z[0]", z.item(0), -_FARTHEST, _FARTHEST)
-        return _noise(self.R, self.range_noise, z)
+        R = np.array(self.R, dtype=np.float64)
+        R[0, 0] += (self.range_noise * z[0] ** 2) ** 2
+        return R
 
     def scale(self, z: ArrayLike) -> NDArray[np.float64]:
         """Return measurements as patterns in [-1, 1].
@@ -211,21 +213,15 @@ class Sensing:
         return cls(**_checks.instance("settings", settings, dict))
 
 
-@kernel
-def _noise(R, range_noise, z):
-    """Return R for a sighting z: its distance z[0] is read from the size of a blob."""
-    R = R.copy()
-    R[0, 0] += (range_noise * z[0] ** 2) ** 2
-    return R
-
-
-def _scaled(z, middle, half):
+def _scaled(
+    z: NDArray[np.float64], middle: NDArray[np.float64], half: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Return measurements as patterns in [-1, 1], clipped to the interval `middle` +- `half`."""
     return np.minimum(np.maximum((z - middle) / half, -1.0), 1.0)
 
 
+#: The same for one measurement, compiled: numpy's overhead is larger than the work.
 _scaled_one = kernel(_scaled)
-
 
 #: The settings that `Arkaq` knows by name.
 PRESETS: dict[str, Callable[[], Sensing]] = {

@@ -81,7 +81,7 @@ def study(
         - of its Kalman filter: every parameter of `Sensing`, for example ``R``, in place of that of
           ``sensing``;
         - of the task: every parameter of `BallApproachEnv` or `ScoreGoalEnv`, for example
-          ``goal_distance``;
+          ``goal_distance``, and ``max_episode_steps``;
         - ``episodes``: the number of fresh starts that judge an agent, 500 by default.
 
         A segmenter, a learner or ``sensing`` is an object, or the name of a class or function of
@@ -135,9 +135,9 @@ def study(
 
     Notes
     -----
-    Agents are trained on the task of the thesis, `approach.make_task` or `goal.make_task`, where
-    equation 5.1 places the ball. They are judged by `approach.evaluate` or `goal.evaluate`, where
-    balls lie evenly over the view, from the seed ``10_000 + seed``, the same for all settings.
+    Agents are trained on the task of the thesis, `approach.make_task` (where equation 5.1 places
+    the ball) or `goal.make_task`. `approach.evaluate` (where the balls lie evenly over the view)
+    or `goal.evaluate` judges them from other seeds, the same for all settings.
 
     A part of your own is known by its class and its attributes. If you change its code, choose
     another folder.

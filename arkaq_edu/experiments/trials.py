@@ -200,7 +200,8 @@ def arrange(problem: str, setting: Mapping[str, Any]) -> Arranged:
 
 def _refuse_unknown(problem: str, task: Mapping[str, Any]) -> None:
     """Refuse settings that the task does not have."""
-    own = [*signature(type(PROBLEMS[problem].make_task().unwrapped)).parameters]
+    env = PROBLEMS[problem].make_task().unwrapped
+    own = [*signature(type(env)).parameters, "max_episode_steps"]  # the latter is Gymnasium's
     known = [*own, *_LEARNING, *_SENSING, "vigilance", "sensing", "segmenter", "learner"]
     for name in task:
         if name not in own:

@@ -197,8 +197,8 @@ class World:
 
     def _move(self, velocity: complex, spin: float) -> None:
         """Move the body for one cycle at a velocity in its own frame (mm/s, rad/s)."""
-        moved = arcs.free_cycle(tuple(self._robot), tuple(self._ball), velocity, spin)
-        robot, ball, free = moved
+        bodies = tuple(self._robot), tuple(self._ball)
+        robot, ball, free = arcs.free_cycle(*bodies, velocity, spin)
         if free:
             self._robot, self._ball = Motion(*robot), Motion(*ball)
             return

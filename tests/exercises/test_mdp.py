@@ -142,10 +142,13 @@ def test_a_wrong_answer_is_told_what_is_wrong(exercise, answer, hint, seed):
 @pytest.mark.parametrize(
     ("rate", "hint"),
     [
-        (lambda n: 0.1, "never settles: after 100,000 visits 23% of a target's scatter"),
-        (lambda n: 1.0, "never settles: after 100,000 visits 100%"),
-        (lambda n: n**-0.3, "never settles"),
-        (lambda n: n**-0.5, "falls too slowly: after 100,000 visits 4% of"),
+        (
+            lambda n: 0.1,
+            "too slowly, or not at all: after 100,000 visits 23% of a",
+        ),
+        (lambda n: 1.0, "too slowly, or not at all: after 100,000 visits 100%"),
+        (lambda n: n**-0.3, "too slowly, or not at all"),
+        (lambda n: n**-0.5, "too slowly, or not at all: after 100,000 visits 4% of"),
         (lambda n: 1 / n**2, "stops too soon"),
         (lambda n: 0.5**n, "29% of the value is still what it began with"),
         (lambda n: 0.1 / n, "of the value is still what it began with"),

@@ -4,7 +4,8 @@ import pandas as pd
 import pytest
 
 from arkaq_edu._paths import course_folder
-from arkaq_edu.experiments import bands, load_study, read_plan
+from arkaq_edu.arkaq import TrainingSettings
+from arkaq_edu.experiments import bands, goal, load_study, read_plan
 from arkaq_edu.experiments.studies import _cells
 
 FOLDER = course_folder() / "data" / "studies"
@@ -106,3 +107,14 @@ def test_each_small_pomdp_is_as_hard_as_chapter_12_says():
     assert regret.loc["ball_side"].max() < 5  # the last look is enough
     assert regret.loc["cheese", "last look"] > 10 * regret.loc["cheese", "two looks"]
     assert regret.loc["tiger", ["last look", "two looks"]].min() > 5 * regret.belief["tiger"]
+
+
+def test_a_network_learns_less_than_chapter_12_says_arkaq_does():
+    plan, settings = read_plan(FOLDER / "deep.toml"), TrainingSettings.goal()
+    cycles = settings.patterns + settings.exploration + settings.exploitation
+    assert plan["settings"]["steps"] == cycles
+    deep = load_study("deep").pivot_table("value", ["goal_distance", "seed"], "quantity")
+    near, arkaq = deep.success["near"], goal.rates(goal.load_study())["near", "ARKAQ, learned"]
+    assert near.mean() > deep["success at random"]["near"].max()
+    assert near.mean() + 1.9 * near.sem() < arkaq.mean() and near.std() > 2 * arkaq.std()
+    assert (deep.success["far"] == 0).all() and (deep["success at random"]["far"] > 0).all()
